@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the charts of a speed_accuracy.csv (and of the step_times.csv beside it): summary.png, six panels that carry the
+"""Draws the charts of a speed_accuracy.csv (and of the step_times.csv beside it): summary.png, the panels that carry the
 message; all.png, the same of every scene; per scene the error against the time per step and against the real-time
 factor; and cost against the number of objects and contacts."""
 
@@ -8,6 +8,7 @@ import csv
 import math
 import os
 import sys
+import textwrap
 
 try:
     import matplotlib
@@ -20,7 +21,7 @@ except ImportError:
 # Okabe and Ito's palette, told apart by the colour-blind; markers differ too.
 STYLES = {
     'mr_hand_interaction': ('#D55E00', 'o'),
-    'mr_hand_interaction, shipped': ('#F0A000', 'o'),
+    'mr_hand_interaction, shipped': ('#8B4513', 'o'),
     'bullet_f32': ('#56B4E9', 's'),
     'bullet_f64': ('#0072B2', 'D'),
     'ode': ('#009E73', '^'),
@@ -29,17 +30,20 @@ STYLES = {
     'mujoco': ('#000000', 'X'),
     'jolt': ('#882255', 'p'),
     'box3d': ('#44AA99', 'h'),
+    'physx': ('#76B900', '*'),
 }
 OTHER = ('#999999', '.')
 LABELS = {'mr_hand_interaction': "ours, paper's hand, step", 'mr_hand_interaction, shipped': 'ours, shipped hand, whole frame', 'bullet_f32': 'Bullet f32', 'bullet_f64': 'Bullet f64', 'ode': 'ODE',
-          'dart': 'DART', 'simbody': 'Simbody', 'mujoco': 'MuJoCo', 'jolt': 'Jolt', 'box3d': 'Box3D'}
+          'dart': 'DART', 'simbody': 'Simbody', 'mujoco': 'MuJoCo', 'jolt': 'Jolt', 'box3d': 'Box3D', 'physx': 'PhysX'}
 LINES = ['-', '--', '-.', ':', (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (7, 2)), (0, (3, 1, 1, 1))]
 OURS, SHIPPED = 'mr_hand_interaction', 'mr_hand_interaction, shipped'
 COST_PREFIX, CROWD_PREFIX = 'cost_', 'crowd_'
 # What carries the message: scene, its title, what is wrong where it is high.
-PANELS = [('pinch_swing', 'a pinched cube, swung: displacement'), ('pinch_noisy', 'the same with a noisy hand'),
-          ('slap_speed', 'slap: speed'), ('free_rotation_energy', 'free rotation: energy'),
+PANELS = [('pinch_swing', 'a pinched cube, swung: displacement'), ('pinch_noisy', 'the same, noisy hand of 120 Hz'),
+          ('pinch_noisy_1khz', 'the same, noisy hand of 1 kHz'), ('slap_speed', 'slap: speed'), ('free_rotation_energy', 'free rotation: energy'),
           ('recording', "a person's recorded hand: displacement"), ('scripted_hand', 'a scripted, noisy hand: displacement')]
+UNMOVABLE = ('slap_speed', 'recording', 'scripted_hand')  # the reference is a hand that nothing moves: not the shipped one
+SMALLEST_CROWD = 1e-6  # [mm]
 SMALLEST = 1e-12  # errors below are rounding; a logarithmic axis has no zero
 
 Row = collections.namedtuple('Row', 'scene engine setting step time p99 error unit failed version date')
@@ -68,16 +72,19 @@ def by_curve(rows):
 
 def footnote(rows):
     """Engines with their versions, and when they ran."""
-    versions = collections.OrderedDict((label_of(r.engine).split(',')[0], r.version) for r in rows)
+    versions = collections.OrderedDict((label_of_engine(r.engine), r.version) for r in rows)
     return '%s. %s' % (', '.join(('%s %s' % item).strip() for item in versions.items()),
                        ' to '.join(sorted({min(r.date for r in rows), max(r.date for r in rows)})))
 
 
+def label_of_engine(engine):
+    return 'ours' if engine == OURS else LABELS.get(engine, engine)
+
+
 def label_of(engine, setting=None):
-    name = LABELS.get(engine, engine)
     if setting is None:
-        return name
-    return name + ': ' + setting.replace('; default', '')
+        return LABELS.get(engine, engine)
+    return label_of_engine(engine) + ': ' + setting.replace('; default', '')
 
 
 def floor_of(rows):
@@ -173,6 +180,7 @@ def draw_scene(scene, rows, folder):
                     'runs, at the time that they took' % (scene.replace('_', ' '), 1e3 * steps[0], 1e3 * steps[-1]),
                     fontsize=10, x=0.05, ha='left')
     place_labels(both[1], labels)
+    figure.text(0.05, 0.01, footnote(rows), fontsize=7, color='#555555')
     figure.savefig(os.path.join(folder, scene + '.png'))
     plt.close(figure)
 
@@ -219,12 +227,12 @@ def label_at_right(axes, labels):
     wanted = [to_axes.transform(axes.transData.transform(one[:2]))[1] for one in labels]
     for (x, y, text, colour), place in zip(labels, spread(wanted, 0.062, 0.03, 0.98)):
         axes.annotate(text, xy=(x, y), xytext=(0.985, place), xycoords='data', textcoords='axes fraction', fontsize=9,
-                      color=colour, ha='right', va='center', weight='bold' if text in (label_of(OURS), label_of(SHIPPED)) else 'normal',
+                      color=colour, ha='right', va='center', weight='bold' if text.startswith('ours') else 'normal',
                       arrowprops={'arrowstyle': '-', 'color': colour, 'lw': 0.5, 'alpha': 0.5, 'shrinkB': 2})
 
 
 def read_times(path):
-    """Mean step time by crowd, engine and setting, at the shortest step."""
+    """Mean and maximum step time [us] by crowd, engine and setting, at the shortest step."""
     times = collections.OrderedDict()
     if not os.path.exists(path):
         return times
@@ -233,38 +241,44 @@ def read_times(path):
     shortest = min((float(r['step_s']) for r in rows), default=0.0)
     for r in rows:
         if float(r['step_s']) == shortest:
-            times[(r['scene'], r['engine'], r['setting'])] = float(r['us_mean'])
+            times[(r['scene'], r['engine'], r['setting'])] = float(r['us_mean']), float(r['us_max'])
     return times
 
 
-def best_of_crowds(times, rows):
-    """The least mean time of each engine in each crowd, of the settings that did not fail there."""
-    failed = {(r.scene, r.engine, r.setting) for r in rows if r.failed}
-    best = collections.OrderedDict()
-    for (scene, engine, setting), time in times.items():
-        if any(s.startswith(scene) and e == engine and t == setting for s, e, t in failed):
-            continue
-        if engine == OURS and setting != 'implicit':
-            continue
-        of_engine = best.setdefault(engine, {})
-        of_engine[scene] = min(time, of_engine.get(scene, math.inf))
-    return best
+def of_crowd(row, scene):
+    return row.scene == scene or row.scene in (scene + '_sunk', scene + '_unrest')
 
 
-def draw_crowds(axes, times, rows):
-    best, labels = best_of_crowds(times, rows), []
-    scenes = list(collections.OrderedDict.fromkeys(scene for scene, _, _ in times))
-    for engine, of_engine in best.items():
+def best_setting(times, rows, scene, engine):
+    """The setting with the least mean time in a crowd, of those that did not fail there; None if all did."""
+    failed = {r.setting for r in rows if r.failed and r.engine == engine and of_crowd(r, scene)}
+    good = {s: mean for (c, e, s), (mean, _) in times.items()
+            if (c, e) == (scene, engine) and s not in failed and (e != OURS or s == 'implicit')}
+    return min(good, key=good.get, default=None)
+
+
+def crowd_error(rows, scene, engine, setting):
+    """How deep a corner was below the floor, or how far a body at rest moved [mm]."""
+    return next(r.error for r in rows if r.engine == engine and r.setting == setting and r.scene in (scene, scene + '_sunk'))
+
+
+def draw_crowds(axes, times, rows, value_of, unit):
+    """A curve per engine over the crowds, at its best setting in each."""
+    scenes, labels = list(collections.OrderedDict.fromkeys(scene for scene, _, _ in times)), []
+    for engine in collections.OrderedDict.fromkeys(engine for _, engine, _ in times):
         colour, marker = STYLES.get(engine, OTHER)
-        places = [i for i, scene in enumerate(scenes) if scene in of_engine]
-        y = [of_engine[scenes[i]] for i in places]
+        best = [(i, scene, best_setting(times, rows, scene, engine)) for i, scene in enumerate(scenes)]
+        points = [(i, value_of(scene, engine, setting)) for i, scene, setting in best if setting is not None]
+        if not points:
+            continue
+        places, y = zip(*points)
         axes.plot(places, y, color=colour, marker=marker, markersize=5, linewidth=1.4 if engine != OURS else 2.2)
-        labels.append((places[-1], y[-1], label_of(engine), colour))
+        labels.append((places[-1], y[-1], label_of_engine(engine), colour))
     axes.set_yscale('log')
     axes.set_xlim(-0.3, len(scenes) + 1.2)
     axes.set_xticks(range(len(scenes)))
     axes.set_xticklabels([scene[len(CROWD_PREFIX):].replace('_', ' ') for scene in scenes], rotation=35, ha='right')
-    axes.set_ylabel('mean time per step of 1 ms [µs]')
+    axes.set_ylabel(unit)
     axes.grid(True, which='major', color='0.9')
     for side in ('top', 'right'):
         axes.spines[side].set_visible(False)
@@ -272,25 +286,30 @@ def draw_crowds(axes, times, rows):
 
 
 def draw_summary(scenes, times, folder):
-    """At most six panels, those of PANELS that were run and the crowds."""
-    panels = [(scene, title) for scene, title in PANELS if scene in scenes]
-    count = len(panels) + (1 if times else 0)
-    if not count:
-        return
-    columns = min(3, count)
-    figure, grid = plt.subplots(math.ceil(count / columns), columns, figsize=(5.2 * columns, 4.4 * math.ceil(count / columns)),
-                                dpi=90, squeeze=False)
-    for axes in grid.flat[count:]:
-        axes.set_visible(False)
-    for axes, (scene, title) in zip(grid.flat, panels):
-        draw_front(axes, scenes[scene], label_at_right)
-        axes.set_title(title, fontsize=11, loc='left')
+    """The panels of PANELS that were run, and the crowds' cost and error."""
+    rows = [r for of_scene in scenes.values() for r in of_scene]
+    panels = [(title, lambda axes, scene=scene: draw_front(axes, [
+        r for r in scenes[scene] if scene not in UNMOVABLE or 'shipped hand' not in r.setting], label_at_right))
+              for scene, title in PANELS if scene in scenes]
     if times:
-        draw_crowds(grid.flat[len(panels)], times, [r for rows in scenes.values() for r in rows])
-        grid.flat[len(panels)].set_title('crowds: cost', fontsize=11, loc='left')
+        panels += [('crowds: cost', lambda axes: draw_crowds(
+            axes, times, rows, lambda *crowd: times[crowd][0], 'mean time per step of 1 ms [µs]')),
+                   ('crowds: depth below the floor, or movement at rest', lambda axes: draw_crowds(
+                       axes, times, rows, lambda *crowd: max(crowd_error(rows, *crowd), SMALLEST_CROWD), 'error [mm]'))]
+    if not panels:
+        return
+    columns = min(2, len(panels))
+    lines = math.ceil(len(panels) / columns)
+    figure, grid = plt.subplots(lines, columns, figsize=(6.0 * columns, 4.4 * lines), dpi=90, squeeze=False)
+    for axes in grid.flat[len(panels):]:
+        axes.set_visible(False)
+    for axes, (title, draw) in zip(grid.flat, panels):
+        draw(axes)
+        axes.set_title(title, fontsize=11, loc='left')
     figure.suptitle('Best of each engine over its settings and step sizes: lower left is better', fontsize=12)
-    figure.text(0.01, 0.005, footnote([r for rows in scenes.values() for r in rows]), fontsize=8, color='#555555')
-    figure.tight_layout(rect=(0, 0.02, 1, 0.98))
+    note = textwrap.fill(footnote(rows), 72 * columns)
+    figure.text(0.01, 0.005, note, fontsize=8, color='#555555')
+    figure.tight_layout(rect=(0, 0.02 + 0.012 * note.count('\n'), 1, 0.99))
     figure.savefig(os.path.join(folder, 'summary.png'))
     plt.close(figure)
 
@@ -338,6 +357,7 @@ def draw_cost(rows, folder):
         axes.set_title('%s, step %.3g ms; crosses: failed' % (name.replace('_', ' '), 1e3 * shortest), fontsize=9,
                        loc='left')
         place_labels(axes, labels)
+        figure.text(0.09, 0.01, footnote(of_group), fontsize=6, color='#555555')
         figure.savefig(os.path.join(folder, name + '.png'))
         plt.close(figure)
 

@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 
 from page_figures import PACKAGE
@@ -13,7 +14,8 @@ from page_figures import PACKAGE
 # `time`: of one core; `sources`: what the figures depend on, files and folders; `measure`: gives ({key: text}, {engine: version}).
 Recipe = collections.namedtuple('Recipe', 'time sources measure')
 PROGRAMS = os.path.join(PACKAGE, 'devel', 'lib', 'mr_hand_interaction')
-CORE = ['src/collision', 'src/response', 'src/simulation', 'src/integration', 'src/tracking', 'config/default.yaml']
+LAWS = ['src/collision', 'src/response', 'src/simulation', 'src/integration']
+CORE = LAWS + ['src/tracking', 'config/default.yaml']
 
 FILTER_SOURCES = ['src/tracking/%s' % name for name in (
     'constant_velocity_filter.cpp', 'hand_filter.cpp', 'hand_filter.h', 'none_filter.cpp', 'one_euro_filter.cpp', 'tracker.cpp',
@@ -293,9 +295,41 @@ def afloat():
     return {'tasks': '; '.join(lines)}, {}
 
 
+RACE_CHARTS = {'summary': 'speed_accuracy', 'all': 'speed_accuracy_all', 'pinch_swing': 'pinch_swing'}
+
+
+def engines():
+    """Ours, Debian's engines, and those whose sources ENGINE_SOURCES names, such as --jolt DIR --box3d DIR."""
+    sources = os.environ.get('ENGINE_SOURCES', '').split()
+    if not sources:
+        raise MeasurementError('ENGINE_SOURCES is empty; allowed: options of scripts/benchmark, such as --jolt DIR --box3d DIR')
+    folder = tempfile.mkdtemp()
+    try:
+        quick, crowds = os.path.join(folder, 'quick'), os.path.join(folder, 'crowds')
+        run('benchmark', '--quick', '--output', quick, *sources)
+        run('benchmark', '--full', '--scene', 'crowd', '--output', crowds, *sources)  # --quick has but one crowd
+        return engines_figures([quick, crowds], folder)
+    finally:
+        shutil.rmtree(folder)
+
+
+def engines_figures(runs, folder):
+    """Of folders that scripts/benchmark wrote. Their charts, drawn in `folder`, become the page's."""
+    sys.path.insert(0, os.path.join(PACKAGE, 'benchmark'))
+    import race_tables
+    race_tables.merge(runs, folder)
+    rows, times = race_tables.read(folder)
+    versions = race_tables.versions(rows)
+    for chart, name in RACE_CHARTS.items():
+        shutil.copyfile(os.path.join(folder, chart + '.png'), os.path.join(PACKAGE, 'docs', 'images', name + '.png'))
+    return {'versions': race_tables.described(versions, max(row.date for row in rows)),
+            'results': table(*race_tables.results(rows)), 'crowds': table(*race_tables.crowds(rows, times))}, versions
+
+
 RECIPES = {
     'afloat': Recipe('2 minutes', CORE + ['src/synthetic', 'src/training', 'config/scenes', 'config/tasks'], afloat),
     'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'modelling'], contact),
+    'engines': Recipe('25 minutes', LAWS + ['benchmark/speed_accuracy'], engines),
     'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
     'gloves': Recipe('1 minute', CORE + ['src/synthetic', 'src/training', 'config/hands'], gloves),
     'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),

@@ -37,12 +37,16 @@ double clock_cost(Between between) {
 
 class Stopwatch {
  public:
-  Stopwatch(double seconds, const std::function<void()>& pause)
-      : seconds_(seconds), pause_(pause), block_begin_(Clock::now()) {
+  /// `seconds`: of processor time, so that other programs do not make an engine too slow.
+  Stopwatch(double seconds, const std::function<void()>& pause) : seconds_(seconds), pause_(pause) {
     samples_.reserve(kMaxSamples);
+    begin_block();
   }
 
-  void begin_block() { block_begin_ = Clock::now(); }
+  void begin_block() {
+    block_begin_ = Clock::now();
+    used_before_ = processor_time();
+  }
 
   void time(Engine& engine) {
     const double before = processor_time();
@@ -60,10 +64,10 @@ class Stopwatch {
     }
     ++count_;
     if (microseconds(end - block_begin_) < 1e6 * kBlock) return;
-    used_ += 1e-6 * microseconds(end - block_begin_);
+    used_ += 1e-6 * (processor_time() - used_before_);
     if (used_ > seconds_) throw std::runtime_error("too slow");
     pause_();
-    block_begin_ = Clock::now();
+    begin_block();
   }
 
   StepTime result() {
@@ -92,6 +96,7 @@ class Stopwatch {
     return processor_time() - before;
   });
   Clock::time_point block_begin_;
+  double used_before_ = 0.0;  // [us]
   std::vector<float> samples_;
   std::size_t count_ = 0;
 };

@@ -8,6 +8,7 @@ import unittest
 PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(PACKAGE, "benchmark"))
 import plot_speed_accuracy as plot  # noqa: E402
+import race_tables  # noqa: E402
 
 HEAD = "scene,engine,setting,step_s,us_per_step,us_per_step_p99,error,error_unit,failed,engine_version,date\n"
 ROWS = (("mr_hand_interaction", "implicit", 2.0, "0.1.0"), ("mr_hand_interaction", "implicit; whole frame", 7.0, "0.1.0"),
@@ -33,6 +34,25 @@ class Charts(unittest.TestCase):
         self.assertEqual(plot.footnote(plot.read(self.csv)), "ours 0.1.0, MuJoCo 3.12.1. 2026-11-25")
         self.assertEqual(plot.main(["plot", self.csv]), 0)
         self.assertIn("summary.png", os.listdir(os.path.dirname(self.csv)))
+
+
+class Tables(unittest.TestCase):
+    def test_the_fastest_and_the_most_accurate_peer_are_those_that_did_not_fail(self):
+        def row(engine, setting, time, error, failed=False):
+            return plot.Row("slap_speed", engine, setting, race_tables.STEP, time, time, error, "%", failed, "1", "2026-11-25")
+        ours = [row(plot.OURS, setting, 1.0, 0.1) for setting in race_tables.HANDS]
+        peers = [row("ode", "", 2.0, 9.0, True), row("jolt", "", 3.0, 8.0), row("mujoco", "", 20.0, 0.0)]
+        head, (line,) = race_tables.results(ours + peers)
+        self.assertEqual(len(head), len(line))
+        self.assertEqual(line[3:], ["Jolt 8, 3", "MuJoCo 0, 20"])
+
+    def test_a_crowd_shows_an_engine_s_fastest_setting_that_did_not_fail(self):
+        def row(setting, error, failed):
+            return plot.Row("crowd_heap_8_sunk", "jolt", setting, 0.001, 1.0, 1.0, error, "mm", failed, "1", "2026-11-25")
+        times = {("crowd_heap_8", "jolt", "a"): (1.0, 2.0), ("crowd_heap_8", "jolt", "b"): (5.0, 12345.0)}
+        head, lines = race_tables.crowds([row("a", 9.0, True), row("b", 0.5, False)], times)
+        self.assertEqual(head[1:], ["Jolt"])
+        self.assertEqual(lines, [["8 dice dropped", "5, 12345; 0.5"]])
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 #include <Jolt/Physics/Collision/ObjectLayerPairFilterTable.h>
 #include <Jolt/Physics/Collision/Shape/BoxShape.h>
 #include <Jolt/Physics/Collision/Shape/CapsuleShape.h>
+#include <Jolt/Physics/Collision/Shape/MeshShape.h>
 #include <Jolt/Physics/Collision/Shape/SphereShape.h>
 #include <Jolt/Physics/Collision/Shape/StaticCompoundShape.h>
 #include <Jolt/Physics/Constraints/HingeConstraint.h>
@@ -81,7 +82,7 @@ struct Layers {
 
 class JoltEngine final : public Engine {
  public:
-  static constexpr bool kHinges = true;
+  static constexpr bool kHinges = true, kMeshes = true;
   JoltEngine(const Setting& setting, const World& world, double step)
       : setting_(setting), step_(static_cast<float>(step)), world_(started(world)) {
     system_.Init(kMostBodies, 0, kMostPairs, kMostContacts, layers_.broad, filter_, layers_.pairs);
@@ -132,9 +133,27 @@ class JoltEngine final : public Engine {
     return bodies().CreateAndAddBody(settings, JPH::EActivation::Activate);
   }
 
+  static JPH::ShapeRefC shape_of(const TriangleMesh& mesh) {
+    JPH::VertexList vertices;
+    for (const Vector3& vertex : mesh.vertices) {
+      const JPH::Vec3 v = to_jolt(vertex);
+      vertices.push_back({v.GetX(), v.GetY(), v.GetZ()});
+    }
+    JPH::IndexedTriangleList triangles;
+    for (const auto& corners : mesh.triangles) {
+      const auto corner = [&](std::size_t i) { return static_cast<JPH::uint32>(corners[i]); };
+      triangles.push_back({corner(0), corner(1), corner(2), 0});
+    }
+    JPH::MeshShapeSettings settings(vertices, triangles);
+    settings.SetEmbedded();
+    return settings.Create().Get();
+  }
+
   JPH::BodyID add(const BodySpec& spec) {
     JPH::ShapeRefC shape;
-    if (const Box* box = std::get_if<Box>(&spec.shape)) {
+    if (const Mesh* mesh = std::get_if<Mesh>(&spec.shape)) {
+      shape = shape_of(*mesh->triangles);
+    } else if (const Box* box = std::get_if<Box>(&spec.shape)) {
       const auto thinnest = static_cast<float>(box->half_extents.minCoeff());
       shape = new JPH::BoxShape(to_jolt(box->half_extents),
                                 setting_.tuned ? 0.0F : std::min(JPH::cDefaultConvexRadius, thinnest));

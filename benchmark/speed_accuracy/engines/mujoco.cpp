@@ -96,10 +96,19 @@ std::string solref(const Setting& setting, const World& world, double step) {
   return out.str();
 }
 
-/// Working memory in numbers: some matrices of all degrees of freedom, up to half a gigabyte.
-std::size_t stack_size(const World& world) {
+/// Working memory, up to half a gigabyte.
+std::string size(const World& world) {
+#if mjVERSION_HEADER < 300
+  // Capacity for constraints, which MuJoCo stores as dense rows: four contacts of four rows on the floor.
+  const std::size_t rows = world.gravity.isZero() ? 4 : 16;
+  // In numbers: some matrices of all degrees of freedom.
   const std::size_t freedoms = 6 * (world.bodies.size() + world.kinematics.size());
-  return std::min<std::size_t>(400'000 + 16 * freedoms * freedoms, 64'000'000);
+  const std::size_t stack = std::min<std::size_t>(400'000 + 16 * freedoms * freedoms, 64'000'000);
+  return "<size njmax=\"" + std::to_string(1000 + rows * world.bodies.size()) + "\" nconmax=\"" +
+         std::to_string(200 + 10 * world.bodies.size()) + "\" nstack=\"" + std::to_string(stack) + "\"/>";
+#else
+  return world.bodies.size() < 100 ? "<size memory=\"64M\"/>" : "<size memory=\"512M\"/>";
+#endif
 }
 
 /// Joint of a body: free, or its hinge. In its own frame.
@@ -115,15 +124,12 @@ std::string freedom(const World& world, std::size_t body) {
 }
 
 std::string xml(const Setting& setting, const World& world, double step) {
-  // Capacity for constraints, which MuJoCo stores as dense rows: four contacts of four rows on the floor.
-  const std::size_t rows = world.gravity.isZero() ? 4 : 16;
   std::ostringstream out;
   out.precision(17);
   out << "<mujoco><option timestep=\"" << step << "\" gravity=\"" << text(world.gravity) << "\" "
-      << setting.option << "/><size njmax=\"" << 1000 + rows * world.bodies.size() << "\" nconmax=\""
-      << 200 + 10 * world.bodies.size() << "\" nstack=\"" << stack_size(world)
-      << "\"/><default><geom friction=\"" << world.friction << " 0.005 0.0001\""
-      << solref(setting, world, step) << "/></default>" << meshes(world) << "<worldbody>";
+      << setting.option << "/>" << size(world) << "<default><geom friction=\"" << world.friction
+      << " 0.005 0.0001\"" << solref(setting, world, step) << "/></default>" << meshes(world)
+      << "<worldbody>";
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const BodySpec& spec = world.bodies[i];
     if (spec.fixed) {
@@ -217,9 +223,11 @@ class MujocoEngine final : public Engine {
   void step() override { mj_step(model_, data_); }
 
   void after_step() override {
-    // MuJoCo resets an unstable world to its start and continues.
+    // MuJoCo resets an unstable world to its start and continues, and drops what its memory has no place for.
     for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
       if (data_->warning[kind].number > 0) throw std::runtime_error("unstable");
+    for (const int kind : {mjWARN_CONTACTFULL, mjWARN_CNSTRFULL})
+      if (data_->warning[kind].number > 0) throw std::runtime_error("out of memory");
     if (hinged_) mj_kinematics(model_, data_);  // a step leaves poses as at its start
   }
 

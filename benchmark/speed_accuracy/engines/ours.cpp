@@ -24,7 +24,7 @@ struct Setting {
   bool shipped_hand = false;
 };
 
-constexpr std::array<Setting, 13> kSettings{{
+constexpr std::array<Setting, 14> kSettings{{
     {"implicit", ContactModelKind::implicit, 0.0, Measured::step},
     {"implicit; stiffness 20000", ContactModelKind::implicit, 20000.0, Measured::step},
     {"implicit; stiffness 200000", ContactModelKind::implicit, 200000.0, Measured::step},
@@ -33,6 +33,8 @@ constexpr std::array<Setting, 13> kSettings{{
     {"implicit; whole frame", ContactModelKind::implicit, 0.0, Measured::whole_frame},
     {"implicit; shipped hand", ContactModelKind::implicit, 0.0, Measured::step, true},
     {"implicit; shipped hand; whole frame", ContactModelKind::implicit, 0.0, Measured::whole_frame, true},
+    {"implicit; shipped hand; stiffness 2000000; whole frame", ContactModelKind::implicit, 2000000.0,
+     Measured::whole_frame, true},
     {"seed", ContactModelKind::seed, 0.0, Measured::step},
     {"penetration", ContactModelKind::penetration, 0.0, Measured::step},
     {"impulse", ContactModelKind::impulse, 0.0, Measured::step},
