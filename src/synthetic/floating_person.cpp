@@ -150,8 +150,8 @@ Pose FloatingPerson::frame(double time, Frame of) const {
   if (of == Frame::body) return {};
   Pose body = path_.at(time);
   if (of == Frame::seen) {
-    body.position += off_.linear;
-    body.orientation = (rotation_by(off_.angular) * body.orientation).normalized();
+    body.position += deviation_.linear;
+    body.orientation = (rotation_by(deviation_.angular) * body.orientation).normalized();
   }
   return body * link_in_body_;
 }
@@ -163,12 +163,12 @@ void FloatingPerson::correct(double since) {
   const Pose foreseen = path_.at(then.time);
   const Vector3 linear = then.sight.body.position - foreseen.position,
                 angular = rotation_vector(then.sight.body.orientation * foreseen.orientation.conjugate());
-  const Twist error{linear - off_.linear, angular - off_.angular};
+  const Twist error{linear - deviation_.linear, angular - deviation_.angular};
   if (error.linear.norm() > kLost) return lose(then.time + skill_.reaction_time);
-  off_.linear += since * (kCorrecting * error.linear + off_rate_.linear);
-  off_.angular += since * (kCorrecting * error.angular + off_rate_.angular);
-  off_rate_.linear += 0.25 * kCorrecting * kCorrecting * since * error.linear;
-  off_rate_.angular += 0.25 * kCorrecting * kCorrecting * since * error.angular;
+  deviation_.linear += since * (kCorrecting * error.linear + deviation_rate_.linear);
+  deviation_.angular += since * (kCorrecting * error.angular + deviation_rate_.angular);
+  deviation_rate_.linear += 0.25 * kCorrecting * kCorrecting * since * error.linear;
+  deviation_rate_.angular += 0.25 * kCorrecting * kCorrecting * since * error.angular;
 }
 
 /// The body is elsewhere than foreseen: lets go of everything.
@@ -185,7 +185,7 @@ void FloatingPerson::set_path(double time, double duration, const Twist& travel,
   const Moment& then = past_.front();
   const Twist& twist = then.sight.body_twist;
   path_ = {time, duration, expected(then.sight.body, twist, time - then.time), twist, travel, ends};
-  off_ = off_rate_ = Twist();
+  deviation_ = deviation_rate_ = Twist();
   for (std::size_t hand = 0; hand < kHands; ++hand)
     if (arms_[hand].frame != Frame::body) begin(time, hand, arms_[hand].frame);
 }

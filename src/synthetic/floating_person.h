@@ -123,7 +123,8 @@ class FloatingPerson : public Person {
   std::array<Arm, kHands> arms_;
   std::array<HandPlace, kHands> shown_;
   BodyPath path_;
-  Twist off_, off_rate_;  ///< of the body from its path, as far as it is corrected [m], [rad]; its rate
+  Twist deviation_;                  ///< of the body from its path, as far as it is corrected [m], [rad]
+  Twist deviation_rate_;             ///< [m/s], [rad/s]
   Vector3 start_ = Vector3::Zero();  ///< of the body at first
   int stops_ = 0;                    ///< since hands took the rail
   double last_time_ = 0.0;

@@ -114,7 +114,7 @@ TEST(FloatingPerson, is_refused_without_an_operator_or_a_rail) {
   expect_refusal(scene, "no operator");
 }
 
-/// Each finger but the thumb presses with at least two bones; none is deeper than a soft pad yields.
+/// Each finger but the thumb touches with at least two bones, none deeper than the compliance of a soft pad.
 TEST(PowerGrip, closes_all_fingers_round_rails_of_2_to_5_cm) {
   for (const double radius : {0.01, 0.016, 0.025}) {
     const PowerGrip grip(radius);

@@ -243,10 +243,10 @@ class CommandsTest(Folders):
                     for row in rows:
                         time, rest = row.split(',', 1)
                         file.write('%r,%s' % (factor * float(time), rest))
-                told = replay('--scene', 'cube', '--input', csv, '--output', csv + '.out')
-                self.assertEqual(told.returncode, 0, told.stderr)
-                self.assertEqual('s apart on average' in told.stderr, bool(question), told.stderr)
-                self.assertIn(question, told.stderr)
+                done = replay('--scene', 'cube', '--input', csv, '--output', csv + '.out')
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual('s apart on average' in done.stderr, bool(question), done.stderr)
+                self.assertIn(question, done.stderr)
 
     def test_a_recording_is_replayed_with_the_options_that_follow_it(self):
         output = Attempt(**OPENING).replay(self.folder)
