@@ -92,7 +92,8 @@ def dexmachina(root, mano, models):
     for path in _folders(root, 'processed/s*/*.npy', 'the folder that processed and the objects are in'):
         told = read_npy(path)
         of, world = told['params'], told['world_coord']
-        yield _hinged(models or root, os.path.basename(path)[:-4], path.split(os.sep)[-2], {side: world['joints.' + side] for side in SIDES},
+        yield _hinged(models or root, os.path.basename(path)[:-4], path.split(os.sep)[-2],
+                      {side: world['joints.' + side] for side in SIDES},
                       Rotation.from_quat(np.asarray(of['obj_quat'])[:, [1, 2, 3, 0]]), np.asarray(of['obj_trans'], float), of['obj_arti'])
 
 
@@ -271,17 +272,17 @@ def manipnet(root, mano, models):
             names, places, turns, seconds = read_bvh(os.path.join(folder, side + 'Hand.bvh'))
             joints = [places[0]]
             for finger, longer in zip(('THUMB', 'INDEX', 'MIDDLE', 'RING', 'PINKY'), LAST_BONES):
-                bones = [i for i, name in enumerate(names) if name.startswith(finger)][-3:]  # the thumb has one more, at its base
-                reach = np.linalg.norm(places[bones[2]] - places[bones[1]], axis=1).mean()
-                along = turns[bones[1]].inv().apply(places[bones[2]] - places[bones[1]])[0]
-                joints += [places[i] for i in bones] + [places[bones[2]] + turns[bones[2]].apply(longer * reach * along / np.linalg.norm(along))]
+                *_, base, middle, last = (i for i, name in enumerate(names) if name.startswith(finger))  # the thumb has a fourth, first
+                before = turns[middle].inv().apply(places[last] - places[middle])[0]  # a straight finger goes on along it
+                joints += [places[base], places[middle], places[last], places[last] + turns[last].apply(longer * before)]
             hands[side] = 0.1 * np.stack(joints, axis=1)
         for file in sorted(glob.glob(os.path.join(glob.escape(folder), '*.bvh'))):
             thing = os.path.basename(file)[:-4]
             if thing.endswith('Hand'):
                 continue
             _, places, turns, seconds = read_bvh(file)
-            meshes = sorted(glob.glob(os.path.join(glob.escape(models or os.path.join(root, 'ObjectModel')), '**', thing + '.obj'), recursive=True))
+            folder_of_meshes = glob.escape(models or os.path.join(root, 'ObjectModel'))
+            meshes = sorted(glob.glob(os.path.join(folder_of_meshes, '**', thing + '.obj'), recursive=True))
             count = min(len(places[0]), *map(len, hands.values()))
             yield Capture(os.path.basename(folder) + '_' + thing, 'one', thing, seconds * np.arange(count),
                           {side: joints[:count] for side, joints in hands.items()}, _poses(turns[0][:count], 0.1 * places[0][:count]),
@@ -327,5 +328,5 @@ def table(root, mano, models):
                       mesh[0] if mesh else start + '.obj')
 
 
-LAYOUTS = {'arctic': arctic, 'artigrasp': artigrasp, 'dexmachina': dexmachina, 'dexycb': dexycb, 'grab': grab, 'hocap': hocap, 'hot3d': hot3d, 'manipnet': manipnet, 'oakink2': oakink2, 'table': table,
-           'taco': taco}
+LAYOUTS = {layout.__name__: layout for layout in (
+    arctic, artigrasp, dexmachina, dexycb, grab, hocap, hot3d, manipnet, oakink2, table, taco)}
