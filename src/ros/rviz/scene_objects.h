@@ -115,6 +115,7 @@ class MarkerScene {
     const float near_plane = -0.9f;
     const Ogre::Vector3 corner = to_world * Ogre::Vector3(-0.98f, -0.96f, near_plane);
     const Ogre::Vector3 above = to_world * Ogre::Vector3(-0.98f, -0.96f + kStatusHeight, near_plane);
+    if (corner.isNaN()) return;  // the window has no size yet
     layer(kStatus)->_setDerivedPosition(corner);
     if (status_) status_->setCharacterHeight((above - corner).length());
   }
