@@ -150,7 +150,7 @@ def write_config(view, focus, size, file):
 
 def focus_on(shown):
     """A place and a distance from which all of a run's hands are seen, and objects near them."""
-    palms = [hand.palm.position for _, topic, message in shown if topic == "rendered_hands" for hand in message.hands]
+    palms = [hand.palm.position for _, topic, message in shown if topic == "rendered_view" for hand in message.rendered_hands]
     if not palms:
         return None
     spans = [(min(getattr(palm, axis) for palm in palms), max(getattr(palm, axis) for palm in palms)) for axis in "xyz"]
@@ -160,15 +160,15 @@ def focus_on(shown):
 
 def up_to_first_hand(shown):
     """An empty scene has too few colours to tell that rviz has drawn it."""
-    first = next((k for k, (_, topic, message) in enumerate(shown) if topic == "rendered_hands" and message.hands), 0)
+    first = next((k for k, (_, topic, message) in enumerate(shown) if topic == "rendered_view" and message.rendered_hands), 0)
     return shown[:first + len(TOPICS)]
 
 
 def draw(scene, begin, shown, options, folder, focus=None):
     """Files of the pictures, one after the other."""
-    stage, files = Stage(TOPICS), []
+    files = []
     before, now = (os.path.join(folder, name) for name in ("before.ppm", "now.ppm"))
-    with tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config:
+    with Stage(TOPICS) as stage, tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config:
         eye, aspect = write_config(scene.view, focus, options.size, config)
         rviz = subprocess.Popen(["rosrun", "rviz", "rviz", "--fullscreen", "-d", config.name],
                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -181,7 +181,7 @@ def draw(scene, begin, shown, options, folder, focus=None):
                 stage.show([entry for entry in shown if since < entry[0] <= until])
                 stage.tick(picture, eye, aspect)
                 since = until
-                drawn(picture, before, now, rviz, stage)
+                drawn(picture, before, now, rviz)
                 files.append(os.path.join(folder, "%04d.png" % picture))
                 finish(now, scene.caption, options.size, files[-1])
         finally:

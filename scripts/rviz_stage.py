@@ -8,12 +8,13 @@ import shutil
 import signal
 import socket
 import subprocess
+import threading
 import time
 
 import rospy
 from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
-from mr_hand_interaction.msg import ContactArray, HandFrame, ObjectStateArray, SceneDescription
+from mr_hand_interaction.msg import RenderedView, SceneDescription
 from visualization_msgs.msg import Marker, MarkerArray
 
 from screenshot import has_scene
@@ -22,8 +23,7 @@ from watch_demo import grab, join_master
 HERE = os.path.dirname(os.path.abspath(__file__))
 PROGRAMS = {"rviz": "rviz", "roscore": "python3-roslaunch", "Xvfb": "xvfb", "import": "imagemagick", "convert": "imagemagick"}
 MARKERS = ("markers", "training/markers")
-POSES = {"scene": SceneDescription, "rendered_hands": HandFrame, "tracked_hands": HandFrame, "objects": ObjectStateArray,
-         "contacts": ContactArray}  # in the order in which they are shown
+POSES = {"scene": SceneDescription, "rendered_view": RenderedView}  # in the order in which they are shown
 STARTED = 120.0  # s; by then the moment of a scene has come, and rviz has drawn
 DRAWN = 60.0  # s; by then a picture has, also on a busy machine
 BETWEEN = 0.1  # s, of two grabs that are to be the same
@@ -103,13 +103,22 @@ def own_stage(name, width, height):
 
 
 class Stage:
-    """What rviz shows of some topics, as of a time."""
+    """What rviz shows of some topics, as of a time, until the end of the block."""
 
     def __init__(self, topics):
         self.publishers = {topic: rospy.Publisher(topic, POSES.get(topic, MarkerArray), queue_size=100, latch=topic == "scene")
                            for topic in topics}
         self.mark = self.publishers[[topic for topic in MARKERS if topic in topics][-1]]
-        self.poses = {}
+        self.poses, self.over = {}, threading.Event()
+        self.repeating = threading.Thread(target=self.repeat, daemon=True)
+
+    def __enter__(self):
+        self.repeating.start()
+        return self
+
+    def __exit__(self, *_):
+        self.over.set()
+        self.repeating.join()
 
     def is_watched(self):
         return all(publisher.get_num_connections() > 0 for publisher in self.publishers.values())
@@ -131,11 +140,11 @@ class Stage:
     def show(self, messages):
         """The last of all poses and of each marker: it stays until the next picture, however long that takes."""
         last = {topic: collections.OrderedDict() for topic in MARKERS}
-        contacts = []
+        views = []
         for _, topic, message in messages:
             if topic in POSES:
                 self.poses[topic] = message
-                contacts += [message] if topic == "contacts" else []
+                views += [message] if topic == "rendered_view" else []
                 continue
             if topic == "training/markers":  # each message has all
                 last[topic] = {None: Marker(action=Marker.DELETEALL)}
@@ -146,18 +155,17 @@ class Stage:
                 last[topic][marker.ns, marker.id] = marker
         if any(topic == "scene" for _, topic, _ in messages):
             self.publishers["scene"].publish(self.poses["scene"])
-        self.show_again()
-        for message in contacts:  # each: an impact is in one frame
-            self.publishers["contacts"].publish(message)
+        for message in views:  # each: an impact is in one frame
+            self.publishers["rendered_view"].publish(message)
         for topic, markers in last.items():
             if markers:
                 self.publishers[topic].publish(MarkerArray(list(markers.values())))
 
-    def show_again(self):
-        """rviz takes hands away that nobody speaks of."""
-        for topic in POSES:
-            if topic in self.poses and topic != "scene":
-                self.publishers[topic].publish(self.poses[topic])
+    def repeat(self):
+        """rviz takes hands away that nobody speaks of, also while a slow machine draws or takes a picture."""
+        while not self.over.wait(BETWEEN):
+            if "rendered_view" in self.poses:
+                self.publishers["rendered_view"].publish(self.poses["rendered_view"])
 
 
 def corners_of_mark(view, aspect):
@@ -182,13 +190,11 @@ def shows_tick(file, picture):
     return all(abs(channel - wanted[i % 3]) < 60 for i, channel in enumerate(corner))
 
 
-def drawn(picture, before, now, process, stage=None):
+def drawn(picture, before, now, process):
     """Takes the screen's picture when its mark is there and it no longer changes."""
     deadline = time.monotonic() + DRAWN
     grab(before)
     while time.monotonic() < deadline and process.poll() is None:
-        if stage:
-            stage.show_again()
         time.sleep(BETWEEN)
         grab(now)
         if filecmp.cmp(before, now, shallow=False) and shows_tick(now, picture):
@@ -202,9 +208,8 @@ def wait_for_rviz(stage, shown, folder, process):
     while process.poll() is None and time.monotonic() < deadline:
         if stage.is_watched():
             stage.show(shown)
-            for _ in range(TRIES):  # hands that are not sent again pass while rviz draws
+            for _ in range(TRIES):
                 time.sleep(BETWEEN)
-                stage.show_again()
                 grab(file)
                 if has_scene(file):
                     return

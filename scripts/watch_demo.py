@@ -139,7 +139,7 @@ def join_master(name, deadline):
 
 def rviz_listens():
     subscribers = rosgraph.Master("/watch_demo").getSystemState()[1]
-    return any(topic == "/rendered_hands" and "/rviz" in nodes for topic, nodes in subscribers)
+    return any(topic == "/rendered_view" and "/rviz" in nodes for topic, nodes in subscribers)
 
 
 def grab(file):

@@ -1,15 +1,20 @@
-// Latency from a hand's message to its rendered view, compared with a relay that only forwards messages: see
-// docs/reliability.md.
+// Latency from a hand's message to its rendered view, and the node's processor time, compared with a relay
+// that only forwards messages: see docs/reliability.md.
+#include <ros/network.h>
 #include <ros/ros.h>
 #include <topic_tools/shape_shifter.h>
+#include <unistd.h>
+#include <xmlrpcpp/XmlRpcClient.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <iterator>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -23,7 +28,6 @@ namespace {
 using topic_tools::ShapeShifter;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kRate = 120.0;  // frames per second to each of the two
 constexpr double kWarmUp = 3.0;  // excluded [s]
 constexpr std::uint32_t kQueue = 10;
 
@@ -98,13 +102,54 @@ std::uint64_t stamp_in(const ShapeShifter& message, std::size_t offset) {
   return std::uint64_t(time[0]) * 1000000000u + time[1];
 }
 
+/// Process of a node, from the node itself.
+int process_of(const std::string& node) {
+  XmlRpc::XmlRpcValue request, response, uri;
+  request[0] = request[1] = ros::names::resolve(node);
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::master::execute("lookupNode", request, response, uri, false) ||
+      !ros::network::splitURI(static_cast<std::string&>(uri), host, port))
+    return 0;
+  XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port));
+  request.clear();
+  request[0] = ros::this_node::getName();
+  return client.execute("getPid", request, response) && response.size() == 3 ? int(response[2]) : 0;
+}
+
+/// Processor time of a process up to now [s].
+double processor_time(int process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  std::istringstream fields(text.substr(std::min(text.size(), text.rfind(')') + 1)));
+  std::string skipped;
+  for (int field = 3; field < 14; ++field) fields >> skipped;
+  double user = 0.0, system = 0.0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+/// Processor time of a node from here on.
+class Cost {
+ public:
+  explicit Cost(const std::string& node) : process_(process_of(node)), begin_(processor_time(process_)) {}
+  double us_per(std::size_t frames) const {
+    return 1e6 * (processor_time(process_) - begin_) / static_cast<double>(frames);
+  }
+
+ private:
+  int process_;
+  double begin_;
+};
+
 class Measurement {
  public:
-  /// `topics`: outputs of the node to wait for, each with its header first, or for markers in the first
-  /// marker.
+  /// `topics`: outputs of the node to wait for, each with its header first, or for /tf and markers in the
+  /// first element.
   Measurement(ros::NodeHandle& node, const mrhi::SyntheticHandOptions& options,
               const std::vector<std::string>& topics)
-      : node_(node), hand_(options) {
+      : node_(node), rate_(options.rate), hand_(options) {
     prepare({});  // advertised with its type
     to_node_ = message_.advertise(node_, "/leap_motion/leap_device", kQueue);
     to_relay_ = message_.advertise(node_, "relay_in", kQueue);
@@ -118,17 +163,19 @@ class Measurement {
           ros::TransportHints().tcpNoDelay()));
     };
     for (const std::string& topic : topics)
-      listen(topic, answers_[topic], topic == "markers" ? 4 : 0);  // after the array's length
+      listen(topic, answers_[topic], topic == "markers" || topic == "/tf" ? 4 : 0);  // the array's length
     listen("relay_out", relayed_, 0);
   }
 
   void run(double seconds) {
     while (ros::ok() && (to_node_.getNumSubscribers() == 0 || to_relay_.getNumSubscribers() == 0))
       ros::WallDuration(0.05).sleep();
-    ros::WallRate half_period(2.0 * kRate);
-    const long frames = std::lround((kWarmUp + seconds) * kRate);
+    ros::WallRate half_period(2.0 * rate_);
+    const long warm_up = std::lround(kWarmUp * rate_), frames = warm_up + std::lround(seconds * rate_);
+    std::optional<Cost> of_node, of_relay;
     for (long i = 0; i < frames && ros::ok(); ++i) {
-      const bool counted = i >= std::lround(kWarmUp * kRate);
+      const bool counted = i >= warm_up;
+      if (i == warm_up) of_node.emplace("interaction_node"), of_relay.emplace("relay");
       mrhi::JointsFrame frame = hand_.next();
       prepare(frame);
       for (auto& [topic, track] : answers_) track.sent(frame_stamp_, counted);
@@ -140,7 +187,9 @@ class Measurement {
       half_period.sleep();
     }
     ros::WallDuration(0.2).sleep();
-    const auto counted = static_cast<std::size_t>(std::lround(seconds * kRate));
+    const auto counted = static_cast<std::size_t>(frames - warm_up);
+    const double node_us = of_node ? of_node->us_per(counted) : 0.0,
+                 relay_us = of_relay ? of_relay->us_per(counted) : 0.0;
     std::printf("| | arrived | message [kB] | p50 [ms] | p99 [ms] | max [ms] |\n|---|---|---|---|---|---|\n");
     relayed_.report("relay", counted);
     for (auto& [topic, track] : answers_) track.report(("hand to " + topic).c_str(), counted);
@@ -148,17 +197,20 @@ class Measurement {
       std::printf("%s: p50 %.2f, p99 %.2f times the relay's\n", topic.c_str(),
                   track.quantile(0.5) / relayed_.quantile(0.5),
                   track.quantile(0.99) / relayed_.quantile(0.99));
+    std::printf("processor time a frame: interaction_node %.0f us, relay %.0f us: %.1f times\n", node_us,
+                relay_us, node_us / relay_us);
     std::fflush(stdout);
   }
 
  private:
   void prepare(mrhi::JointsFrame frame) {
     frame.stamp = mrhi::from_ros_time(ros::Time::now());
-    mrhi::write_leap(frame, "leap_hands", sequence_++, static_cast<float>(kRate), message_);
+    mrhi::write_leap(frame, "leap_hands", sequence_++, static_cast<float>(rate_), message_);
     frame_stamp_ = static_cast<std::uint64_t>(frame.stamp);
   }
 
   ros::NodeHandle& node_;
+  double rate_;  // frames per second to each of the two
   mrhi::SyntheticHand hand_;
   ShapeShifter message_;
   ros::Publisher to_node_, to_relay_;
@@ -181,9 +233,9 @@ int main(int argc, char** argv) {
     return 0;
   }
   mrhi::SyntheticHandOptions options;
-  options.rate = kRate;
+  options.rate = parameters.param("rate", 120.0);
   options.motion = parameters.param<std::string>("motion", options.motion);
-  std::istringstream topics(parameters.param<std::string>("topics", "rendered_hands"));
+  std::istringstream topics(parameters.param<std::string>("topics", "rendered_view"));
   Measurement measurement(node, options, {std::istream_iterator<std::string>(topics), {}});
   ros::AsyncSpinner spinner(1);
   spinner.start();

@@ -8,8 +8,9 @@ namespace {
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction interaction_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
 
-Subscribes to hand_frame, simulates the contact of the hands with the objects, and publishes rendered_hands,
-tracked_hands, objects, contacts, interaction_events, haptics, markers, /tf, simulation_input, /diagnostics.
+Subscribes to hand_frame, simulates the contact of the hands with the objects, and publishes rendered_view,
+rendered_hands, tracked_hands, objects, contacts, interaction_events, haptics, markers, /tf, simulation_input,
+/diagnostics.
 Services: ~reset, ~pause, ~spawn, ~delete, ~set.
 
   ~scene              NAME|FILE; default cube

@@ -1,11 +1,13 @@
 #include "mr_hand_interaction/ros/hand_tracking.h"
 
 #include <mr_hand_interaction/HandFrame.h>
+#include <ros/callback_queue_interface.h>
 #include <ros/ros.h>
 #include <tf2_msgs/TFMessage.h>
 #include <topic_tools/shape_shifter.h>
 
 #include <boost/make_shared.hpp>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -38,16 +40,32 @@ struct Parameters {
   TrackerReader::Options reader;
 };
 
-/// A TransformMemory of /tf and /tf_static, read in the callbacks' thread.
+/// Runs callbacks at once, in the thread in which their messages arrive.
+class ImmediateQueue : public ros::CallbackQueueInterface {
+ public:
+  void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t /*owner*/) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    callback->call();
+  }
+  void removeByID(std::uint64_t /*owner*/) override {}
+
+ private:
+  std::mutex mutex_;
+};
+
+/// A TransformMemory of /tf and /tf_static. Messages of /tf wait until they are needed: this node itself
+/// sends one for each frame, which must not wake the thread that waits for hands.
 class TrackerTransforms : public TransformMemory {
  public:
   static constexpr const char* kReason = "unusable transform";
 
   TrackerTransforms(ros::NodeHandle node, InputStatistics& statistics) : statistics_(statistics) {
     constexpr std::uint32_t kTransformQueue = 100;
-    moving_ = node.subscribe<tf2_msgs::TFMessage>(
-        "/tf", kTransformQueue,
-        boost::function<void(const Arrival&)>([this](const Arrival& arrival) { take(arrival); }));
+    ros::SubscribeOptions moving;
+    moving.initByFullCallbackType<const Arrival&>("/tf", kTransformQueue,
+                                                  [this](const Arrival& arrival) { note(arrival); });
+    moving.callback_queue = &at_once_;
+    moving_ = node.subscribe(moving);
     const auto take_fixed = [this](const Arrival& arrival) {
       for (const auto& transform : arrival.getConstMessage()->transforms) set_fixed(transform);
     };
@@ -55,18 +73,34 @@ class TrackerTransforms : public TransformMemory {
                                                  boost::function<void(const Arrival&)>(take_fixed));
   }
 
- private:
-  using Arrival = ros::MessageEvent<const tf2_msgs::TFMessage>;
-  /// This node's own transforms are of objects, which carry no tracker.
-  void take(const Arrival& arrival) {
-    if (arrival.getPublisherName() == ros::this_node::getName()) return;
-    for (const auto& transform : arrival.getConstMessage()->transforms) {
-      const std::string why = set(transform, from_ros_time(ros::Time::now()));
-      if (!why.empty()) statistics_.rejected(kReason, why);
+  /// Takes the messages that wait.
+  void take_waiting() {
+    std::vector<Arrival> arrivals;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      arrivals.swap(waiting_);
+    }
+    for (const Arrival& arrival : arrivals) {
+      for (const auto& transform : arrival.getConstMessage()->transforms) {
+        const std::string why = set(transform, from_ros_time(arrival.getReceiptTime()));
+        if (!why.empty()) statistics_.rejected(kReason, why);
+      }
     }
   }
 
+ private:
+  using Arrival = ros::MessageEvent<const tf2_msgs::TFMessage>;
+  /// This node's own transforms are of objects, which carry no tracker.
+  void note(const Arrival& arrival) {
+    if (arrival.getPublisherName() == ros::this_node::getName()) return;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    waiting_.push_back(arrival);
+  }
+
   InputStatistics& statistics_;
+  ImmediateQueue at_once_;
+  std::mutex mutex_;
+  std::vector<Arrival> waiting_;
   ros::Subscriber moving_, fixed_;
 };
 
@@ -92,7 +126,10 @@ struct HandTracking::Impl {
     publisher_ = node_.advertise<mr_hand_interaction::HandFrame>("hand_frame", kQueue);
     for (const std::string& topic : TrackerReader::topics()) sources_.push_back({topic, {}});
     for (Source& source : sources_) subscribe(source);
-    statistics_.each_second([this] { accept_other_types(); });
+    statistics_.each_second([this] {
+      transforms_.take_waiting();
+      accept_other_types();
+    });
   }
 
   using Event = ros::MessageEvent<const topic_tools::ShapeShifter>;
@@ -133,6 +170,7 @@ struct HandTracking::Impl {
       frame = reader_.read(
           std::move(arrived),
           [this](const std::string& frame_id, Nanoseconds stamp) {
+            transforms_.take_waiting();
             return transforms_.pose(fixed_frame_, frame_id, stamp);
           },
           &sequence);

@@ -41,9 +41,9 @@ std::array<const typename List::value_type*, Size> by_type(const List& list, con
     wrong_count(name + " has " + std::to_string(list.size()) + " entries; at most " + std::to_string(Size));
   std::array<const typename List::value_type*, Size> found{};
   for (const auto& element : list) {
-    const std::string has_type = name + " has type " + std::to_string(element.type);
-    if (element.type >= Size) wrong_count(has_type + "; 0 to " + std::to_string(Size - 1) + " are known");
-    if (found[element.type] != nullptr) wrong_count(has_type + " twice");
+    const auto has_type = [&] { return name + " has type " + std::to_string(element.type); };
+    if (element.type >= Size) wrong_count(has_type() + "; 0 to " + std::to_string(Size - 1) + " are known");
+    if (found[element.type] != nullptr) wrong_count(has_type() + " twice");
     found[element.type] = &element;
   }
   return found;

@@ -61,12 +61,22 @@ bool has_materials(const std::string& mesh) {
   return ending != "stl" && ending != "STL";
 }
 
-constexpr double kUnseen = 0.002, kDeep = 0.012;  // depths of a finger that make a body translucent [m]
+// Depths of a finger that make a body translucent [m]: a firm grasp closes 10 mm into what it holds, which
+// stays almost opaque.
+constexpr double kUnseen = 0.006, kDeep = 0.025;
 constexpr double kMinOpacity = 0.6;
 
 double opacity_around(double depth) {
   const double seen = std::clamp((depth - kUnseen) / (kDeep - kUnseen), 0.0, 1.0);
   return 1.0 - (1.0 - kMinOpacity) * seen;
+}
+
+/// A mesh stays opaque: viewers do not sort its triangles, so that a translucent one would show some of its
+/// far side.
+bool may_be_translucent(const Body& body) {
+  const auto is_mesh = [](const auto& part) { return std::holds_alternative<Mesh>(part.shape); };
+  return body.visuals.empty() ? std::none_of(body.shapes.begin(), body.shapes.end(), is_mesh)
+                              : std::none_of(body.visuals.begin(), body.visuals.end(), is_mesh);
 }
 
 bool same(const Pose& a, const Pose& b) {
@@ -202,8 +212,8 @@ Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGB
   return std::visit(AddShape{pose, paint, id, layer}, shape);
 }
 
-/// Draws the bodies of a scene, in layers `objects` and `fixtures`. A body penetrated by a tracked finger
-/// becomes translucent, so that the ghost is visible.
+/// Draws the bodies of a scene, in layers `objects` and `fixtures`. A body without a mesh that a tracked
+/// finger penetrates becomes translucent, so that the ghost is visible.
 class BodyMarkers {
  public:
   explicit BodyMarkers(const Scene& scene) : scene_(scene) {}  ///< keeps a reference
@@ -217,7 +227,8 @@ class BodyMarkers {
     for (std::size_t i = 0; i < now_.size(); ++i) now_[i] = {state.bodies[i].pose, 1.0};
     for (const Contact& contact : contacts) {
       double& opacity = now_[contact.key.body].opacity;
-      opacity = std::min(opacity, opacity_around(contact.depth));
+      if (may_be_translucent(scene_.bodies[contact.key.body]))
+        opacity = std::min(opacity, opacity_around(contact.depth));
     }
     all = all || added_.size() != now_.size();
     int object_id = 0, fixture_id = 0;

@@ -194,6 +194,16 @@ mr_hand_interaction::ContactArray contacts_message(const Outcome& outcome, const
   return message;
 }
 
+mr_hand_interaction::RenderedView view_message(const Outcome& outcome, const std_msgs::Header& header) {
+  mr_hand_interaction::RenderedView message;
+  message.header = header;
+  message.rendered_hands = rendered_message(outcome, header).hands;
+  message.tracked_hands = tracked_message(outcome, header).hands;
+  message.objects = objects_message(outcome, header).objects;
+  message.contacts = contacts_message(outcome, header).contacts;
+  return message;
+}
+
 mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const FrameResult& result,
                                                     const Event& event, const std_msgs::Header& header) {
   mr_hand_interaction::InteractionEvent message;

@@ -8,6 +8,7 @@
 #include <mr_hand_interaction/HapticsArray.h>
 #include <mr_hand_interaction/InteractionEvent.h>
 #include <mr_hand_interaction/ObjectStateArray.h>
+#include <mr_hand_interaction/RenderedView.h>
 #include <mr_hand_interaction/SceneDescription.h>
 #include <mr_hand_interaction/SpawnObject.h>
 #include <mr_hand_interaction/SpawnUrdf.h>
@@ -35,6 +36,8 @@ mr_hand_interaction::HandFrame tracked_message(const Outcome& outcome, const std
 mr_hand_interaction::HandFrame rendered_message(const Outcome& outcome, const std_msgs::Header& header);
 mr_hand_interaction::ObjectStateArray objects_message(const Outcome& outcome, const std_msgs::Header& header);
 mr_hand_interaction::ContactArray contacts_message(const Outcome& outcome, const std_msgs::Header& header);
+/// All four.
+mr_hand_interaction::RenderedView view_message(const Outcome& outcome, const std_msgs::Header& header);
 /// The scene's joints, in order: position, velocity, and the joint's own forces as effort [rad or m].
 sensor_msgs::JointState joint_states_message(const Outcome& outcome, const std_msgs::Header& header);
 mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const FrameResult& result,

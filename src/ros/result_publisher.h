@@ -7,7 +7,7 @@
 #include <ros/ros.h>
 #include <std_msgs/ColorRGBA.h>
 #include <std_msgs/String.h>
-#include <tf2_ros/transform_broadcaster.h>
+#include <tf2_msgs/TFMessage.h>
 #include <visualization_msgs/MarkerArray.h>
 #include <boost/make_shared.hpp>
 
@@ -203,12 +203,14 @@ class ResultPublisher {
                                                               if (markers_) markers_->send_all();
                                                             })),
         scene_publisher_(node.advertise<mr_hand_interaction::SceneDescription>("scene", 1, true)),
+        transforms_(node.advertise<tf2_msgs::TFMessage>("/tf", kTransformQueue)),
         picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {
     add<mr_hand_interaction::ContactArray>(node, "contacts", Moment::response, Shows::hands,
                                            contacts_message);
     add<mr_hand_interaction::ObjectStateArray>(node, "objects", Moment::response, Shows::objects,
                                                objects_message);
     add<sensor_msgs::JointState>(node, "joint_states", Moment::response, Shows::joints, joint_states_message);
+    add<mr_hand_interaction::RenderedView>(node, "rendered_view", Moment::picture, Shows::view, view_message);
     add<mr_hand_interaction::HandFrame>(node, "rendered_hands", Moment::picture, Shows::hands,
                                         rendered_message);
     add<mr_hand_interaction::HandFrame>(node, "tracked_hands", Moment::picture, Shows::hands,
@@ -261,9 +263,9 @@ class ResultPublisher {
   void publish_scene(const FrameResult& result, const ros::Time& stamp) {
     publish_scene_description();
     for (const Output& output : outputs_) {
-      const bool of_hands = output.shows == Shows::hands;
-      if (!of_hands || !result.rendered.empty())
-        output.publish(result, of_hands ? header(result) : header(stamp));
+      const bool of_hands = output.shows == Shows::hands, has_hands = !result.rendered.empty();
+      const bool as_it_was = of_hands || (output.shows == Shows::view && has_hands);
+      if (!of_hands || has_hands) output.publish(result, as_it_was ? header(result) : header(stamp));
     }
     publish_transforms(header(stamp));
     if (standard_) standard_->publish_objects(simulation_->scene(), simulation_->state(), header(stamp));
@@ -284,12 +286,13 @@ class ResultPublisher {
   static constexpr double kMarkerRate = 60.0;  ///< [Hz]
 
  private:
-  static constexpr int kQueue = 10, kEventQueue = 100;
+  static constexpr int kQueue = 10, kEventQueue = 100, kTransformQueue = 100;
 
   /// Order of topics: for robots and gloves first, then for the view.
   enum class Moment { response, picture };
-  /// Contents of a topic: hands are repeated unchanged; joints are published only if the scene has any.
-  enum class Shows { hands, objects, joints };
+  /// Contents of a topic: hands, and a view with hands, are repeated unchanged; joints are published only if
+  /// the scene has any.
+  enum class Shows { hands, objects, joints, view };
   struct Output {
     Moment moment;
     Shows shows;
@@ -352,7 +355,11 @@ class ResultPublisher {
 
   void publish_transforms(const std_msgs::Header& header) {
     if (header.stamp == transforms_stamp_) return;  // tf2 warns of a repeated stamp
-    transforms_.sendTransform(object_transforms(simulation_->scene(), simulation_->state(), header));
+    publish_shared(transforms_, [&] {
+      tf2_msgs::TFMessage message;
+      message.transforms = object_transforms(simulation_->scene(), simulation_->state(), header);
+      return message;
+    });
     transforms_stamp_ = header.stamp;
   }
 
@@ -363,10 +370,9 @@ class ResultPublisher {
   HapticsPublisher haptics_;
   std::optional<StandardOutputs> standard_;
   std::vector<Output> outputs_;
-  ros::Publisher events_, marker_publisher_, scene_publisher_;
+  ros::Publisher events_, marker_publisher_, scene_publisher_, transforms_;
   bool scene_changed_ = false;
   visualization_msgs::MarkerArray::Ptr picture_;  // the last one
-  tf2_ros::TransformBroadcaster transforms_;
   ros::Time transforms_stamp_;
   ros::SteadyTime shown_, markers_shown_;
 };

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <mr_hand_interaction/ContactArray.h>
 #include <mr_hand_interaction/HandFrame.h>
-#include <mr_hand_interaction/ObjectStateArray.h>
+#include <mr_hand_interaction/RenderedView.h>
 #include <mr_hand_interaction/SceneDescription.h>
 
 #include <algorithm>
@@ -89,8 +88,41 @@ class SceneView {
     state_.hands.resize(kMaxHands);
     result_ = FrameResult();
   }
-  void take(const mr_hand_interaction::ObjectStateArray& objects) {
-    for (const auto& object : objects.objects) {
+  void take(const mr_hand_interaction::RenderedView& view) {
+    const std::vector<Hand> rendered = hands_of(view.rendered_hands);
+    tracked_ = hands_of(view.tracked_hands);
+    take_rendered(rendered);
+    take_objects(view.objects);
+    take_contacts(view.contacts);
+  }
+  /// Removes hands and contacts, which nobody has reported for a while.
+  void remove_hands() { take(mr_hand_interaction::RenderedView()); }
+
+  const std::string& model() const { return model_; }  ///< contact model
+  const Scene& scene() const { return scene_; }
+  /// Poses of bodies, held bodies, and ids of hands.
+  const SimulationState& state() const { return state_; }
+  /// Rendered hands with their loads, the corresponding tracked hands, and contacts.
+  const FrameResult& result() {
+    result_.tracked.clear();
+    for (std::size_t i = 0; i < result_.rendered.size(); ++i) {
+      RenderedHand& rendered = result_.rendered[i];
+      note_touches(result_.contacts, static_cast<int>(i), rendered);
+      const auto tracked = std::find_if(tracked_.begin(), tracked_.end(),
+                                        [&](const Hand& hand) { return hand.id == rendered.hand.id; });
+      result_.tracked.push_back(tracked != tracked_.end() ? *tracked : rendered.hand);
+    }
+    return result_;
+  }
+
+ private:
+  static std::vector<Hand> hands_of(const std::vector<mr_hand_interaction::Hand>& hands) {
+    mr_hand_interaction::HandFrame frame;
+    frame.hands = hands;
+    return from_message(frame).hands;
+  }
+  void take_objects(const std::vector<mr_hand_interaction::ObjectState>& objects) {
+    for (const auto& object : objects) {
       const auto index = find_body(scene_, object.name);
       if (!index) continue;
       const auto i = static_cast<std::size_t>(*index);
@@ -101,9 +133,9 @@ class SceneView {
       state_.interactions[i].level = object.held ? InteractionLevel::grasp : InteractionLevel::none;
     }
   }
-  void take(const mr_hand_interaction::ContactArray& contacts) {
+  void take_contacts(const std::vector<mr_hand_interaction::Contact>& contacts) {
     result_.contacts.clear();
-    for (const auto& message : contacts.contacts) {
+    for (const auto& message : contacts) {
       const auto body = find_body(scene_, message.object);
       std::size_t hand = 0;
       while (hand < result_.rendered.size() && result_.rendered[hand].hand.id != message.hand_id) ++hand;
@@ -126,35 +158,14 @@ class SceneView {
       result_.contacts.push_back(contact);
     }
   }
-  void take_rendered(const mr_hand_interaction::HandFrame& message) {
-    const HandFrame frame = from_message(message);
+  void take_rendered(const std::vector<Hand>& hands) {
     result_.rendered.clear();
-    for (const Hand& hand : frame.hands) {
+    for (const Hand& hand : hands) {
       if (result_.rendered.size() == state_.hands.size()) break;
       state_.hands[result_.rendered.size()].current = hand;
       result_.rendered.push_back({hand, {}, {}});
     }
   }
-  void take_tracked(const mr_hand_interaction::HandFrame& message) { tracked_ = from_message(message).hands; }
-
-  const std::string& model() const { return model_; }  ///< contact model
-  const Scene& scene() const { return scene_; }
-  /// Poses of bodies, held bodies, and ids of hands.
-  const SimulationState& state() const { return state_; }
-  /// Rendered hands with their loads, the corresponding tracked hands, and contacts.
-  const FrameResult& result() {
-    result_.tracked.clear();
-    for (std::size_t i = 0; i < result_.rendered.size(); ++i) {
-      RenderedHand& rendered = result_.rendered[i];
-      note_touches(result_.contacts, static_cast<int>(i), rendered);
-      const auto tracked = std::find_if(tracked_.begin(), tracked_.end(),
-                                        [&](const Hand& hand) { return hand.id == rendered.hand.id; });
-      result_.tracked.push_back(tracked != tracked_.end() ? *tracked : rendered.hand);
-    }
-    return result_;
-  }
-
- private:
   std::string model_;
   Scene scene_;
   SimulationState state_;

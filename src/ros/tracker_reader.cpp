@@ -97,12 +97,12 @@ const std::vector<Tracker>& trackers() {
 
 /// Finds a type by its MD5, which does not depend on its name. Throws DecodeError.
 const Tracker& tracker_of(const TrackerReader::Message& message) {
+  for (const Tracker& tracker : trackers())
+    if (std::count(tracker.md5s.begin(), tracker.md5s.end(), message.md5) > 0) return tracker;
   const std::set<std::string> types = TrackerReader::types();
   std::string allowed = text::joined({types.begin(), types.end()});
-  for (const Tracker& tracker : trackers()) {
-    if (std::count(tracker.md5s.begin(), tracker.md5s.end(), message.md5) > 0) return tracker;
+  for (const Tracker& tracker : trackers())
     if (tracker.type == message.type) allowed = "md5 " + text::joined(tracker.md5s);
-  }
   throw DecodeError(DecodeError::Kind::unknown_version, "unknown version of " +
                                                             text::one_line(message.type, 100) + ": md5 " +
                                                             message.md5 + "; allowed: " + allowed);

@@ -12,7 +12,7 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
-from mr_hand_interaction.msg import Contact, ContactArray, HandFrame, InteractionEvent, ObjectStateArray, Phalanx
+from mr_hand_interaction.msg import Contact, ContactArray, HandFrame, InteractionEvent, ObjectStateArray, Phalanx, RenderedView
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from pointing_hand import FACE, HEIGHT, PERIOD, RADIUS, SPEED, frame, hand, push_tips  # noqa: E402
@@ -27,13 +27,14 @@ class InteractionTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node("interaction_test")
-        cls.rendered, cls.contacts, cls.objects, cls.events = {}, {}, {}, []
+        cls.rendered, cls.contacts, cls.objects, cls.views, cls.events = {}, {}, {}, {}, []
         cls.now, cls.transforms, cls.layers, cls.counts, cls.reported = None, {}, set(), {}, rospy.Time()
         cls.shown = rospy.Time()
         cls.clock = StandingClock(lambda: cls.shown)
         cls.subscribers = [
             rospy.Subscriber("rendered_hands", HandFrame, cls.take_rendered),
             rospy.Subscriber("contacts", ContactArray, cls.take_contacts),
+            rospy.Subscriber("rendered_view", RenderedView, cls.take_view),
             rospy.Subscriber("objects", ObjectStateArray, cls.take_objects),
             rospy.Subscriber("interaction_events", InteractionEvent, cls.take_event),
             rospy.Subscriber("/tf", TFMessage, cls.take_transforms),
@@ -67,6 +68,10 @@ class InteractionTest(unittest.TestCase):
     @classmethod
     def take_contacts(cls, message):
         cls.contacts[message.header.stamp] = message.contacts
+
+    @classmethod
+    def take_view(cls, message):
+        cls.views[message.header.stamp] = message
 
     @classmethod
     def take_objects(cls, message):
@@ -116,6 +121,16 @@ class InteractionTest(unittest.TestCase):
     def push(self, begin=-0.10, end=0.02):
         """Stamps of the frames in which the finger pushes along +x, from `begin` to `end`."""
         return [self.answer(hand(tip)) for tip in push_tips(begin, end)]
+
+    def test_a_view_is_all_of_its_frame_in_one_message(self):
+        for stamp in self.push():
+            wait_until(lambda: stamp in self.views, "the view of a frame")
+            view = self.views[stamp]
+            self.assertEqual(view.rendered_hands, self.rendered[stamp].hands)
+            self.assertEqual([tracked.id for tracked in view.tracked_hands], [shown.id for shown in view.rendered_hands])
+            self.assertEqual(view.objects[0], self.objects[stamp])
+            self.assertEqual(view.contacts, self.contacts[stamp])
+        self.assertTrue(any(self.contacts[stamp] for stamp in self.views if stamp in self.contacts), "the finger has pushed")
 
     def settled_counts(self):
         """Counts come once a second: those of everything that has been answered so far."""

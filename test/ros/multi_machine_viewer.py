@@ -5,8 +5,9 @@ import sys
 import threading
 
 import rospy
+from tf2_msgs.msg import TFMessage
 
-from mr_hand_interaction.msg import ContactArray, HandFrame, InteractionEvent, ObjectStateArray, SceneDescription
+from mr_hand_interaction.msg import InteractionEvent, RenderedView, SceneDescription
 
 
 class Viewer:
@@ -14,11 +15,9 @@ class Viewer:
         self.lock, self.seen = threading.Lock(), {}
         self.events = {value: name for name, value in vars(InteractionEvent).items() if name.isupper()}
         self.subscribers = [rospy.Subscriber("scene", SceneDescription, self.take_scene),
-                            rospy.Subscriber("rendered_hands", HandFrame, self.take_hands, queue_size=10),
-                            rospy.Subscriber("tracked_hands", HandFrame, lambda _: None, queue_size=10),
-                            rospy.Subscriber("contacts", ContactArray, self.take_contacts, queue_size=10),
-                            rospy.Subscriber("interaction_events", InteractionEvent, self.take_event),
-                            rospy.Subscriber("objects", ObjectStateArray, self.take_objects)]
+                            rospy.Subscriber("rendered_view", RenderedView, self.take_view, queue_size=10),
+                            rospy.Subscriber("/tf", TFMessage, lambda _: None, queue_size=10),
+                            rospy.Subscriber("interaction_events", InteractionEvent, self.take_event)]
 
     def count(self, what, by=1):
         with self.lock:
@@ -28,19 +27,18 @@ class Viewer:
         for body in scene.bodies:
             self.count("shape of " + body.name, len(body.shapes))
 
-    def take_hands(self, frame):
+    def take_view(self, view):
         self.count("pictures")
-        self.count("hands", len(frame.hands))
-
-    def take_contacts(self, message):
-        self.count("contacts", len(message.contacts))
-        self.count("forces", sum(contact.normal_force > 0.1 for contact in message.contacts))
+        self.count("hands", len(view.rendered_hands))
+        self.count("contacts", len(view.contacts))
+        self.count("forces", sum(contact.normal_force > 0.1 for contact in view.contacts))
+        self.take_objects(view.objects)
 
     def take_event(self, event):
         self.count(self.events[event.kind])
 
-    def take_objects(self, message):
-        for thing in message.objects:
+    def take_objects(self, objects):
+        for thing in objects:
             if thing.held:
                 self.count("held " + thing.name)
             if thing.pose.position.z > 0.27:

@@ -25,12 +25,12 @@ TEST(BodyMarkers, an_object_with_a_finger_deep_inside_lets_the_ghost_be_seen) {
   Shown shown;
   shown.update();
   float before = 1.0f;
-  for (const double depth : {0.0015, 0.004, 0.006, 0.1}) {
+  for (const double depth : {0.005, 0.008, 0.012, 0.1}) {
     Contact contact;
     contact.key.body = 0;
     contact.depth = depth;
     shown.result.contacts = {contact};
-    const bool deep = depth > 0.002;
+    const bool deep = depth > 0.006;
     EXPECT_EQ(shown.update()["objects"], deep);
     if (!deep) continue;
     const float opacity = shown.first("objects").colors.at(0).a;
@@ -41,6 +41,17 @@ TEST(BodyMarkers, an_object_with_a_finger_deep_inside_lets_the_ghost_be_seen) {
   shown.result.contacts.clear();
   EXPECT_EQ(shown.update()["objects"], 1);
   EXPECT_EQ(shown.first("objects").colors.at(0).a, 1.0f);
+}
+
+TEST(BodyMarkers, a_mesh_stays_opaque_as_viewers_do_not_sort_its_triangles) {
+  Shown shown;
+  shown.scene.bodies[0].visuals = {shown.scene.bodies[1].visuals};
+  Contact contact;
+  contact.depth = 0.1;
+  shown.result.contacts = {contact};
+  shown.update();
+  EXPECT_EQ(shown.first("objects").type, Marker::MESH_RESOURCE);
+  EXPECT_EQ(shown.first("objects").color.a, 1.0f);
 }
 
 TEST(BodyMarkers, no_side_of_a_box_is_dark_and_its_top_is_lightest) {

@@ -74,10 +74,7 @@ TEST(SceneView, what_is_drawn_from_messages_is_what_the_node_draws) {
   SceneView view;
   view.take(scene_message(shown.scene, shown.configuration, header));
   const Outcome outcome{shown.scene, shown.result, shown.state};
-  view.take_rendered(rendered_message(outcome, header));
-  view.take_tracked(tracked_message(outcome, header));
-  view.take(contacts_message(outcome, header));
-  view.take(objects_message(outcome, header));
+  view.take(view_message(outcome, header));
   Markers markers(view.scene(), caption(view.model(), view.scene().gravity));
   MarkerArray array;
   markers.note(view.result(), header.stamp);
@@ -171,10 +168,7 @@ TEST(SceneView, a_frame_of_one_hand_that_holds_with_five_fingers_is_less_than_5_
   std_msgs::Header header;
   header.frame_id = "world";
   const auto bytes = [](const auto& message) { return ros::serialization::serializationLength(message); };
-  const Outcome outcome{shown.scene, shown.result, shown.state};
-  EXPECT_LT(bytes(rendered_message(outcome, header)) + bytes(tracked_message(outcome, header)) +
-                bytes(contacts_message(outcome, header)) + bytes(objects_message(outcome, header)),
-            5000u);
+  EXPECT_LT(bytes(view_message({shown.scene, shown.result, shown.state}, header)), 5000u);
 }
 
 }  // namespace

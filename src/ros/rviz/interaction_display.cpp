@@ -32,10 +32,8 @@
 namespace mrhi {
 namespace {
 
-using mr_hand_interaction::ContactArray;
-using Hands = mr_hand_interaction::HandFrame;
 using mr_hand_interaction::ObjectState;
-using mr_hand_interaction::ObjectStateArray;
+using mr_hand_interaction::RenderedView;
 using mr_hand_interaction::SceneDescription;
 
 constexpr std::uint32_t kQueue = 10;
@@ -61,8 +59,8 @@ void set_colour(const rviz::ColorProperty& property, std_msgs::ColorRGBA& colour
 
 }  // namespace
 
-/// Draws hands, objects and their contacts in rviz from messages: `scene` once, then `rendered_hands`,
-/// `tracked_hands`, `objects` and `contacts`. Draws what Markers makes; skins are deformed and lit here.
+/// Draws hands, objects and their contacts in rviz from messages: `scene` once, then `rendered_view`. Draws
+/// what Markers makes; skins are deformed and lit here.
 class InteractionDisplay : public rviz::Display {
  public:
   InteractionDisplay() { add_properties(); }
@@ -73,8 +71,7 @@ class InteractionDisplay : public rviz::Display {
     read_properties();
     if (frame_.empty() || !place_in_fixed_frame()) return;
     if (hands_came_ != ros::SteadyTime() && (ros::SteadyTime::now() - hands_came_).toSec() > kPassing) {
-      view_.take_rendered(Hands());
-      view_.take(ContactArray());
+      view_.remove_hands();
       hands_came_ = ros::SteadyTime();
       changed_ = true;
     }
@@ -194,8 +191,7 @@ class InteractionDisplay : public rviz::Display {
 
   void add_properties() {
     const PictureStyle style;
-    namespace_ = new rviz::StringProperty(
-        "Namespace", "", "In which scene, rendered_hands, tracked_hands, objects and contacts are", this);
+    namespace_ = new rviz::StringProperty("Namespace", "", "In which scene and rendered_view are", this);
     unreliable_ = new rviz::BoolProperty("Unreliable", false,
                                          "Ask for UDP: on a slow network, late poses are dropped", this);
     const auto colour = [this](const char* layer, const char* title, const QColor& value) {
@@ -248,19 +244,12 @@ class InteractionDisplay : public rviz::Display {
       markers_ = std::make_unique<Markers>(view_.scene(), caption(view_.model(), view_.scene().gravity));
       setStatusStd(rviz::StatusProperty::Ok, "Scene", message.name);
     });
-    listen<Hands>("rendered_hands", [this](const Hands& message) {
-      view_.take_rendered(message);
+    listen<RenderedView>("rendered_view", [this](const RenderedView& message) {
+      view_.take(message);
       stamp_ = message.header.stamp;
       hands_came_ = ros::SteadyTime::now();
-    });
-    listen<Hands>("tracked_hands", [this](const Hands& message) { view_.take_tracked(message); });
-    listen<ObjectStateArray>("objects", [this](const ObjectStateArray& message) {
-      view_.take(message);
       for (const ObjectState& object : message.objects) objects_[object.name] = object;
-    });
-    listen<ContactArray>("contacts", [this](const ContactArray& message) {
-      view_.take(message);
-      if (markers_) markers_->note(view_.result(), message.header.stamp);
+      if (markers_) markers_->note(view_.result(), stamp_);
     });
   }
 

@@ -4,6 +4,7 @@
 #include <OgreManualObject.h>
 #include <OgreMaterial.h>
 #include <OgreMaterialManager.h>
+#include <OgrePass.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 #include <OgreTechnique.h>
@@ -114,6 +115,7 @@ class MarkerScene {
     const float near_plane = -0.9f;
     const Ogre::Vector3 corner = to_world * Ogre::Vector3(-0.98f, -0.96f, near_plane);
     const Ogre::Vector3 above = to_world * Ogre::Vector3(-0.98f, -0.96f + kStatusHeight, near_plane);
+    if (corner.isNaN()) return;  // the window has no size yet
     layer(kStatus)->_setDerivedPosition(corner);
     if (status_) status_->setCharacterHeight((above - corner).length());
   }
@@ -180,6 +182,16 @@ class MarkerScene {
     return true;
   }
 
+  /// rviz lights shapes and meshes from the camera alone, and leaves their averted sides almost black.
+  static void brighten(const std_msgs::ColorRGBA& c, rviz::MarkerBase& drawn) {
+    constexpr float kEverywhere = 0.5f, kFacing = 0.5f;  // rviz: none, and 1
+    for (const Ogre::MaterialPtr& material : drawn.getMaterials()) {
+      if (!material->getTechnique(0)->getPass(0)->getLightingEnabled()) continue;  // lit by Markers
+      material->setSelfIllumination(kEverywhere * c.r, kEverywhere * c.g, kEverywhere * c.b);
+      material->setDiffuse(kFacing * c.r, kFacing * c.g, kFacing * c.b, c.a);
+    }
+  }
+
   void add(const Marker& marker) {
     if (marker.ns == kStatus) return draw_status(marker);
     if (marker.type == Marker::MESH_RESOURCE && !rviz::loadMeshFromResource(marker.mesh_resource) &&
@@ -190,6 +202,7 @@ class MarkerScene {
       item = std::make_unique<Item>(marker.type, context_, layer(marker.ns));
     item->drawn->setMessage(marker);
     const bool is_body = marker.ns == "objects" || marker.ns == "fixtures";
+    if (is_body && marker.color.a > 0.0f) brighten(marker.color, *item->drawn);
     if (!is_body || marker.text.empty()) return;
     if (!item->selection) item->selection = selection_(marker.text, item->node);
     // Set each time: the marker resets the handle.
