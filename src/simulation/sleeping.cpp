@@ -56,6 +56,7 @@ void Sleeping::wake(const Neighbours& neighbours, double step, SimulationState& 
 void Sleeping::settle(const Neighbours& neighbours, double step, SimulationState& state) {
   if (!allowed_ || !count_rest(step, state)) return;
   find_tired(neighbours, step, state);
+  if (std::find(tired_.begin(), tired_.end(), true) == tired_.end()) return;
   for (std::size_t b = 0; b < tired_.size(); ++b) {
     if (!tired_[b]) continue;
     state.asleep[b] = 1;
