@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "spring_contact.h"
 
 namespace mrhi {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "impact.h"
-
 namespace mrhi {
 namespace {
 
