@@ -162,9 +162,9 @@ struct Common {
 };
 
 Common common_of(const ShapePair& pair, const Touch& touch) {
-  const double then = std::max(touch.time, 0.0);
-  return {together(pair.a.body.material, pair.b.body.material), pair.a.at(then).position,
-          pair.b.at(then).position};
+  const Material material = together(pair.a.body.material, pair.b.body.material);
+  if (touch.time <= 0.0) return {material, pair.a.pose.position, pair.b.pose.position};
+  return {material, pair.a.at(touch.time).position, pair.b.at(touch.time).position};
 }
 
 /// Stiffness of a strip of contact, as a fraction of the pair's.
@@ -174,9 +174,8 @@ double stiffness_of(double breadth) {
 
 /// For a pair that meets within the step, points are where it will touch, arms start from the centres at that
 /// time, and the depth is at most 0 until then. All points have equal fractions of the pair's stiffness.
-BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const Touch& touch,
-                         const Common& common, const ManifoldPoint& point, const BodyContact* memory) {
-  BodyContact contact;
+void make_contact(const BodyContactKey& key, const ShapePair& pair, const Touch& touch, const Common& common,
+                  const ManifoldPoint& point, const BodyContact* memory, BodyContact& contact) {
   if (memory != nullptr) contact = *memory;
   const bool lasting = memory != nullptr && memory->depth > 0.0 && point.depth > 0.0;
   contact.key = key;
@@ -198,7 +197,6 @@ BodyContact make_contact(const BodyContactKey& key, const ShapePair& pair, const
   } else {
     contact.friction = Friction::sticking;
   }
-  return contact;
 }
 
 /// Pairs come sorted, so that only the points of one need to be: each goes among those before it. What
@@ -316,7 +314,8 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
         if (touch->time >= 0.0 && point.depth < -kMinSeparation) continue;  // meets later
         const BodyContactKey key{static_cast<std::uint16_t>(ia), static_cast<std::uint16_t>(ib),
                                  static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};
-        found_.push_back(make_contact(key, pair, *touch, common, point, memory_of(key, before)));
+        found_.emplace_back();
+        make_contact(key, pair, *touch, common, point, memory_of(key, before), found_.back());
         regions[found_.size() - 1 - first] = point.region;
       }
       for (int region = 0; region < Manifold::kMaxRegions; ++region) {
@@ -324,6 +323,7 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
         int count = 0;
         for (std::size_t k = first; k < found_.size(); ++k)
           if (regions[k - first] == region) together[static_cast<std::size_t>(count++)] = &found_[k];
+        if (count == 0) break;  // regions are numbered from 0
         place_friction(pair, together, count);
       }
       for (std::size_t k = first; k < found_.size(); ++k) anchor(a, b, found_[k]);

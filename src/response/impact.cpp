@@ -20,13 +20,16 @@ Matrix3 collision_matrix(double inverse_mass, const Matrix3& world_inverse_inert
   return inverse_mass * Matrix3::Identity() - arm * world_inverse_inertia * arm;
 }
 
+double max_eigenvalue(double tt, double ts, double ss) {
+  return 0.5 * (tt + ss) + std::sqrt(0.25 * (tt - ss) * (tt - ss) + ts * ts);
+}
+
 //     T'KT = ( tt ts )      lambda = (tt + ss) / 2 + sqrt((tt - ss)^2 / 4 + ts^2)
 //            ( ts ss )
 double max_tangential_response(const Matrix3& k, const Vector3& n) {
   if (n.isZero(0.0)) return k.trace();
   const Vector3 t = n.unitOrthogonal(), s = n.cross(t), k_s = k * s;
-  const double tt = t.dot(k * t), ss = s.dot(k_s), ts = t.dot(k_s);
-  return 0.5 * (tt + ss) + std::sqrt(0.25 * (tt - ss) * (tt - ss) + ts * ts);
+  return max_eigenvalue(t.dot(k * t), t.dot(k_s), s.dot(k_s));
 }
 
 // p += J, L += r x J: Eq. 15 for momenta, which are the state, with its angular part.

@@ -11,6 +11,8 @@ namespace mrhi {
 /// kinematic): K = I/m - [r]x I^-1 [r]x, symmetric positive definite [1/kg].
 Matrix3 collision_matrix(double inverse_mass, const Matrix3& world_inverse_inertia, const Vector3& r);
 
+/// Returns the largest eigenvalue of the symmetric matrix (tt ts; ts ss).
+double max_eigenvalue(double tt, double ts, double ss);
 /// Returns the largest eigenvalue of K perpendicular to the unit vector `n` [1/kg]; for n = 0 the trace,
 /// which bounds all eigenvalues. Friction relaxed by its inverse does not overshoot in any direction.
 double max_tangential_response(const Matrix3& k, const Vector3& n);

@@ -11,17 +11,6 @@ namespace {
 /// and slipped, it did not converge in three steps of four: after 20 directions and 100 evaluations
 /// velocities were off by a quarter to all of the contacts' effect.
 constexpr std::size_t kMaxExact = 4;
-/// The same for an island nearly at rest, as a pile, where the warm start is nearly the solution.
-constexpr std::size_t kMaxAtRest = 10;
-
-/// True if no body is faster than a fall of one step, |p| < m h g. At 0 g this is never true: columns in
-/// microgravity are large islands.
-bool is_nearly_at_rest(const ContactStep& step, const Island& island) {
-  const double slow = step.step * step.gravity.norm();
-  return std::all_of(island.bodies.begin(), island.bodies.end(), [&](const IslandBody& body) {
-    return step.bodies[body.body].linear_momentum.norm() < slow * step.scene.bodies[body.body].mass;
-  });
-}
 
 }  // namespace
 
@@ -41,12 +30,15 @@ void ImplicitModel::respond(ContactStep& step) {
 void ImplicitModel::begin_contacts(ContactStep& step) {
   share_strength(configuration_.hand, step.contacts);
   if (configuration_.edge_grip) grip_edges(step);
-  for (Contact& contact : step.contacts) contact.force.setZero();
   last_forces_.clear();
   for (BodyContact& contact : step.body_contacts) {
     last_forces_.push_back(contact.force);
     contact.force.setZero();
   }
+  // Only islands with contacts between bodies are large.
+  if (!last_forces_.empty())
+    for (const Contact& contact : step.contacts) last_forces_.push_back(contact.force);
+  for (Contact& contact : step.contacts) contact.force.setZero();
 }
 
 // A body that is held and hit is solved twice: before the impacts for the motion by its springs, and again
@@ -86,8 +78,7 @@ void ImplicitModel::solve_islands(ContactStep& step) {
 /// slipping.
 bool ImplicitModel::solve(ContactStep& step, const Island& island) {
   const std::size_t bodies = island.bodies.size();
-  if (bodies > kMaxExact && (bodies > kMaxAtRest || !is_nearly_at_rest(step, island)))
-    return solve_large(step, island);
+  if (bodies > kMaxExact) return solve_large(step, island);
   problem_.begin(step, island, configuration_);
   bool agree = problem_.solve();
   // The operator receives the contacts' forces, so the momenta must follow from these.

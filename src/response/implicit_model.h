@@ -31,7 +31,7 @@ class ImplicitModel : public ContactModel {
   bool solve_large(ContactStep& step, const Island& island);
 
   LargeIslandSolver large_;
-  std::vector<Vector3> last_forces_;  // by contact between bodies, of the last step [N]
+  std::vector<Vector3> last_forces_;  // of contacts between bodies, then with hands [N]
 
  protected:
   const ContactConfiguration configuration_;

@@ -56,6 +56,7 @@ void Sleeping::wake(const Neighbours& neighbours, double step, SimulationState& 
 void Sleeping::settle(const Neighbours& neighbours, double step, SimulationState& state) {
   if (!allowed_ || !count_rest(step, state)) return;
   find_tired(neighbours, step, state);
+  if (std::find(tired_.begin(), tired_.end(), true) == tired_.end()) return;
   for (std::size_t b = 0; b < tired_.size(); ++b) {
     if (!tired_[b]) continue;
     state.asleep[b] = 1;
@@ -90,7 +91,7 @@ bool Sleeping::count_rest(double step, SimulationState& state) const {
 void Sleeping::find_tired(const Neighbours& neighbours, double step, const SimulationState& state) {
   tired_.assign(state.bodies.size(), 0);
   for (const BodyContact& contact : state.body_contacts) {
-    if (contact.depth <= 0.0 || contact.still < kTiredTime) continue;
+    if (contact.still < kTiredTime) continue;
     for (const std::uint16_t body : {contact.key.a, contact.key.b}) tired_[body] = !scene_.bodies[body].fixed;
   }
   for (std::size_t b = 0; b < tired_.size(); ++b) {

@@ -43,14 +43,13 @@ class TrainingMarkers : public ::testing::Test {
  protected:
   TrainingMarkers() {
     std::filesystem::remove_all(folder_);
-    SessionHeader header;
-    header.participant = "P01";
-    header.group = "beginner";
-    header.handedness = "right";
-    header.condition = "implicit";
-    header.started = "2024-05-06T10:00:00Z";
-    header.software = "0.1.0";
-    session_.emplace(test::shipped_task("pick_and_place"), header, 0, folder_.string(), 0);
+    header_.participant = "P01";
+    header_.group = "beginner";
+    header_.handedness = "right";
+    header_.condition = "implicit";
+    header_.started = "2024-05-06T10:00:00Z";
+    header_.software = "0.1.0";
+    session_.emplace(test::shipped_task("pick_and_place"), header_, 0, folder_.string(), 0);
     status_.trial = status_.trials = 1;
     status_.object = "cube";
     status_.instruction = instruction_now(*session_, false, true);
@@ -68,6 +67,7 @@ class TrainingMarkers : public ::testing::Test {
 
   const std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "mrhi_training_markers";
   const Body body_ = testing_body();
+  SessionHeader header_;
   std::optional<Session> session_;
   TrainingStatus status_;
   ObjectState object_;
@@ -158,6 +158,32 @@ TEST_F(TrainingMarkers, the_object_is_highlighted_until_it_is_held) {
     EXPECT_GT(point.z, object_.pose.position.z + body_.bounding_radius);
   object_.held = true;
   EXPECT_TRUE(shown("object").empty());
+}
+
+// The object leaves the hand at 1 cm/s; drift is its way in two seconds.
+TEST_F(TrainingMarkers, the_result_has_the_drift_in_millimetres) {
+  session_.emplace(test::two_places(), header_, 0, (folder_ / "drift").string(), 0);
+  session_->begin(0);
+  Observation seen = test::Feeder(session_->task()).seen;
+  const auto see = [&](const Vector3& from, bool held, double seconds, const Vector3& velocity) {
+    seen.held = held;
+    seen.twist.linear = velocity;
+    for (int i = 0; i < std::lround(100 * seconds); ++i) {
+      seen.stamp += 10'000'000;
+      seen.pose.position = from + 0.01 * i * velocity;
+      session_->update(seen);
+    }
+  };
+  const Vector3 still = Vector3::Zero();
+  see(still, false, 0.5, still);
+  see({0.06, 0, 0}, true, 0.5, still);
+  see(test::kFirst, true, 3.1, still);
+  see(test::kSecond, true, 3.1, still);
+  see(test::kSecond, false, 2.1, {0.006, 0.008, 0.0});
+  ASSERT_TRUE(session_->last());
+  const auto results = shown("result");
+  ASSERT_EQ(results.size(), 1u);
+  EXPECT_NE(results[0].text.find(", drifted 20 mm"), std::string::npos) << results[0].text;
 }
 
 }  // namespace

@@ -190,30 +190,35 @@ TEST(Overlaps, of_bodies_at_load_are_refused_and_named) {
 // Faces that coincide have no corner within the other mesh: what they share is found by its volume.
 TEST(Overlaps, of_meshes_inside_each_other_are_refused_whatever_coincides) {
   const test::Folder folder;
-  std::string cube = "";
-  for (int i = 0; i < 8; ++i)
-    cube += "v " + std::to_string(i & 1 ? 0.03 : -0.03) + " " + std::to_string(i & 2 ? 0.03 : -0.03) + " " +
-            std::to_string(i & 4 ? 0.03 : -0.03) + "\n";
-  folder.write("cube.obj", cube + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
-  const std::string mesh = test::kInertial + std::string(
-                                                 "<collision><geometry><mesh filename=\"cube.obj\"/>"
-                                                 "</geometry></collision>");
-  const auto error = [&](const std::string& other, const std::string& place) {
+  // Half the thickness is that of the mesh; it is 6 cm wide [m].
+  const auto mesh_of = [&](const std::string& name, double half) {
+    std::string text = "";
+    for (int i = 0; i < 8; ++i)
+      text += "v " + std::to_string(i & 1 ? 0.03 : -0.03) + " " + std::to_string(i & 2 ? 0.03 : -0.03) + " " +
+              std::to_string(i & 4 ? half : -half) + "\n";
+    folder.write(name, text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+    return test::kInertial +
+           ("<collision><geometry><mesh filename=\"" + name + "\"/></geometry></collision>");
+  };
+  const std::string mesh = mesh_of("cube.obj", 0.03), plate = mesh_of("plate.obj", 0.0004);
+  const auto error = [&](const std::string& other, const std::string& place, const std::string& first) {
     return test::scene_error(folder.write(
         "s.urdf",
-        test::robot(test::link("a", mesh) + test::joint("floating", "world", "a") + test::link("b", other) +
+        test::robot(test::link("a", first) + test::joint("floating", "world", "a") + test::link("b", other) +
                     test::joint("floating", "world", "b", "xyz=\"" + place + "\""))));
   };
   for (const char* place :
        {"0 0 0", "0.001 0 0", "0 0.03 0", "0 0 0.0585", "0.03 0.03 0", "0.02 -0.01 0.005"})
-    test::expect_words(error(mesh, place), {"'b'", "'a'", "at most 0.001 m"});
+    test::expect_words(error(mesh, place, mesh), {"'b'", "'a'", "at most 0.001 m"});
   for (const char* place : {"0.0595 0 0", "0 0.06 0", "0.06 0.06 0", "0 0 0.07"})
-    EXPECT_EQ(error(mesh, place), "") << place;
+    EXPECT_EQ(error(mesh, place, mesh), "") << place;
   const std::string box =
       test::kInertial +
       std::string("<collision><geometry><box size=\"0.06 0.06 0.06\"/></geometry></collision>");
-  test::expect_words(error(box, "0.03 0 0"), {"'b'", "'a'"});
-  EXPECT_EQ(error(box, "0.06 0 0"), "");
+  test::expect_words(error(box, "0.03 0 0", mesh), {"'b'", "'a'"});
+  EXPECT_EQ(error(box, "0.06 0 0", mesh), "");
+  // No ball of 1 mm fits in what a box shares with a thin plate: corners of the plate are too deep.
+  test::expect_words(error(box, "0.05 0.01 0", plate), {"'b'", "'a'", "at most 0.001 m"});
 }
 
 TEST(Overlaps, of_fixtures_with_each_other_are_their_own_affair) {

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <vector>
+
+#include "spring_contact.h"
+
+namespace mrhi {
+
+/// Linear and angular velocity of a body, or the impulses that change them.
+using Motion6 = Eigen::Matrix<double, 6, 1>;
+using Mobility6 = Eigen::Matrix<double, 6, 6>;
+
+/// A body of a large island.
+struct PatchBody {
+  Motion6 motion;  // of the iterate, world axes
+  double inverse_mass;
+  Matrix3 inverse_inertia;  // world axes
+};
+
+/// On b: friction along u and v, the normal impulse against n [N s], and twist about n [N m s].
+using PatchImpulses = Eigen::Vector4d;
+enum { kNormal = 2, kTwist = 3 };
+
+/// A contact in the form that sweeps use, in its patch's axes.
+struct PatchPoint {
+  PatchImpulses impulses;                   // accumulated
+  Motion6 by_normal;                        // change of the relative motion by a unit normal impulse
+  Eigen::Matrix<double, 6, 2> by_friction;  // likewise by unit friction along u and v
+  Vector3 place;                            // of friction, from the patch's origin [m]
+  double lever_u, lever_v;                  // r x n, the lever arm of the normal impulse about the origin [m]
+  double normal_mobility;                   // change of the rate by a unit impulse along n [1/kg]
+  double depth, ahead, fade;
+  double compliance;        // 1 / (k e), along n [1/kg]
+  double soft_stiffness;    // times the step, reduced by the bodies' mobility [N s/m]
+  double kept, damping;     // factors of the last friction impulse and of the sliding in the next one
+  Vector3 stretch_impulse;  // contribution of the stretch to it [N s]
+  double friction, bond;
+  bool nonlinear;  // true if the normal force is not proportional to depth
+
+  double rate(const Motion6& m) const { return m[2] + lever_u * m[3] + lever_v * m[4]; }
+  Eigen::Vector2d sliding(const Motion6& m) const {
+    return {m[0] + m[4] * place.z() - m[5] * place.y(), m[1] + m[5] * place.x() - m[3] * place.z()};
+  }
+  /// Linear impulse on b.
+  Vector3 impulse() const { return {impulses[0], impulses[1], -impulses[kNormal]}; }
+  /// Adds all impulses, about the patch's origin.
+  void add_impulses(Motion6& sum) const;
+};
+
+/// Contacts of one pair of shapes with one normal, relaxed together. A hand's contact is its own patch, and
+/// so is a point of a grip. Its axes are u, v and the normal n, its origin is the first point of friction.
+/// Relative motions are those of a against b there, and impulses act on b.
+struct ContactPatch {
+  std::size_t first;  // index of its first point, and row
+  int count, a, b;
+  int separations;                  // sweeps that could not solve it simultaneously
+  bool grips;                       // true if its spring acts alike in all directions
+  bool twists;                      // true for a hand's contact, which resists spin about n
+  Matrix3 axes;                     // rows u, v, n
+  Vector3 arm_a, arm_b;             // of the origin, world axes [m]
+  Motion6 drive;                    // relative motion by that of a hand
+  Motion6 by_twist;                 // change of the relative motion by a unit impulse about n
+  Eigen::Matrix4d system, inverse;  // rates by normal impulses, with springs [1/kg], [kg]
+
+  Motion6 relative_motion(const PatchBody& a, const PatchBody& b) const;
+  /// Changes the motions of the bodies by impulses on b.
+  void apply(const Motion6& impulse, PatchBody& a, PatchBody& b) const;
+  /// Sets the impulses of a point to those of a force in world axes [N]: f = t - p n, p cut off at 0.
+  void start_from(const Vector3& force, double step, PatchPoint& point, PatchBody& a, PatchBody& b) const;
+  /// Solves the patch with all others fixed: changes the relative motion, and adds to the impulse that
+  /// apply() then gives to the bodies. `points`, `rows`: its first.
+  void relax(double step, PatchPoint* points, const SpringContact* rows, Motion6& motion, Motion6& impulse);
+  /// Writes the response that settle() reads.
+  void fill_response(double step, const PatchPoint& point, const Motion6& motion, SpringContact& row) const;
+
+ private:
+  bool relax_normals_together(PatchPoint* points, Motion6& motion, Motion6& impulse);
+  void relax_twist(double step, const Spring& spring, PatchPoint& point, Motion6& motion,
+                   Motion6& impulse) const;
+};
+
+/// Makes the patch of `count` rows from `first` on, and adds its points.
+ContactPatch make_patch(double step, const std::vector<SpringContact>& rows, std::size_t first, int count,
+                        const std::vector<PatchBody>& bodies, std::vector<PatchPoint>& points);
+
+}  // namespace mrhi
