@@ -17,7 +17,7 @@ constexpr double kApart = 0.34;                  // of each hand on a rail from 
 constexpr double kOff = 0.08;                    // from where a hand goes straight to what it takes [m]
 constexpr double kArm = 0.8;                     // [m] places farther away are out of reach
 constexpr double kNear = 0.004;                  // of the palm before the fingers close [m]
-constexpr double kHoldWidth = 0.02;              // for Fitts' law [m]
+constexpr double kReachBits = 4.2;               // of Fitts' law: a reach of kApart to a hold of 2 cm
 constexpr double kCorrecting = 2.0;              // rate of correcting a seen error [1/s]
 constexpr double kApproach = 0.4, kClose = 0.4, kGrip = 0.5, kOpen = 0.25, kRetreat = 0.4,
                  kGoAside = 0.7;  // times at pace 1 [s]
@@ -38,9 +38,12 @@ constexpr double kExact = 0.012;                 // of a carried object from its
 constexpr double kPatience = 3.0;                // for what was put in its place [s]
 constexpr double kThrow = 0.8;                   // speed of a throw [m/s]
 constexpr double kSwing = 0.25, kRelease = 0.3;  // way before the hand opens [m]; duration of that [s]
-constexpr double kAstray = 0.25;                 // of the body from where it works [m]
-constexpr double kCatchable = 0.1;               // faster objects are not taken [m/s]
-const Vector3 kHatchScene(0.0, 0.15, 0.25);      // of the hatch's wall in its shipped scene
+constexpr double kAstray = 0.25, kAskew = 0.4;   // of the body from where it works [m], [rad]
+// Without a hold, practised motions are done in this fraction of their time: a shorter push drives the body
+// away less, as a latch resists with the same force at any speed.
+constexpr double kFlick = 0.5;
+constexpr double kCatchable = 0.1;           // faster objects are not taken [m/s]
+const Vector3 kHatchScene(0.0, 0.15, 0.25);  // of the hatch's wall in its shipped scene
 
 Pose expected(const Pose& pose, const Twist& twist, double ahead) {
   return {pose.position + ahead * twist.linear,
@@ -200,7 +203,7 @@ HandPlace FloatingPerson::move(double time, const Sight& sight) {
   const bool begins = past_.empty();
   past_.push_back({time, sight});
   if (begins) {
-    start_ = sight.body.position;
+    start_ = sight.body;
     drift(time);
   }
   while (past_.size() > 1 && past_[1].time <= time - skill_.reaction_time) past_.pop_front();
@@ -225,7 +228,7 @@ void FloatingPerson::decide(double time) {
     case FloatingGoal::Kind::bring:
       return bring(time, goal);
     case FloatingGoal::Kind::rest:
-      come_to_rest(time, goal.place, kPlaced);
+      come_to_rest(time, goal.place);
       return;
     case FloatingGoal::Kind::work:
       return work(time, goal);
@@ -235,7 +238,7 @@ void FloatingPerson::decide(double time) {
 // ---- The body along rails.
 
 /// Returns whether the body rests.
-bool FloatingPerson::come_to_rest(double time, const std::optional<Vector3>& place, double tolerance) {
+bool FloatingPerson::come_to_rest(double time, const std::optional<Vector3>& place) {
   const Moment& then = past_.front();
   const Twist& twist = then.sight.body_twist;
   const Vector3 at = expected(then.sight.body, twist, time - then.time).position;
@@ -245,7 +248,7 @@ bool FloatingPerson::come_to_rest(double time, const std::optional<Vector3>& pla
   const Rail& rail = nearest_rail(reached);
   const Vector3& axis = rail.axis;
   const double along = axis.dot(off), speed = twist.linear.norm();
-  if (still && off.norm() < tolerance) return true;
+  if (still && off.norm() < kPlaced) return true;
   if (distance(reached, rail) > kArm) {
     rest_hands(time);
     return false;
@@ -253,9 +256,8 @@ bool FloatingPerson::come_to_rest(double time, const std::optional<Vector3>& pla
   const Vector3 ahead =
       std::abs(along) < kPlaced ? Vector3::Zero() : Vector3(std::copysign(1.0, along) * axis);
   if (!arms_[kLeft].on_rail || !arms_[kRight].on_rail) {
-    const double takes = movement_time(kApart) + paced(kApproach + kClose + kGrip);
     const double nearing = ahead.dot(twist.linear);
-    const double wait = nearing > kStill ? (std::abs(along) - kBrake) / nearing - takes : 0.0;
+    const double wait = nearing > kStill ? (std::abs(along) - kBrake) / nearing - take_time() : 0.0;
     stops_ = 0;
     if (wait > 0.0) {
       busy_until_ = time + wait;
@@ -330,9 +332,8 @@ FloatingPerson::Hold FloatingPerson::on_rail(std::size_t hand, const Vector3& at
 
 void FloatingPerson::take_rail(double time, std::size_t first, std::size_t last, const Vector3& ahead) {
   const Moment& then = past_.front();
-  const double takes = movement_time(kApart) + paced(kApproach + kClose + kGrip);
   if (first == kLeft && last == kRight) drift(time);
-  const Pose body = expected(then.sight.body, then.sight.body_twist, time + takes - then.time);
+  const Pose body = expected(then.sight.body, then.sight.body_twist, time + take_time() - then.time);
   for (std::size_t hand = first; hand <= last; ++hand) {
     const Vector3 at = body.position + ahead + body.orientation * Vector3(side(hand) * kApart, 0.0, 0.0);
     const Pose tracked = body * link_in_body_;
@@ -359,9 +360,9 @@ void FloatingPerson::take(double time, std::size_t hand, Hold hold) {
   Arm& arm = arms_[hand];
   arm.retreat = hold.retreat, arm.open = hold.open, arm.near = hold.near;
   const Pose off = shifted(hold.wrist, kOff * hold.retreat), now = arm.way.back().wrist;
-  const double behind = hold.retreat.dot(off.position - now.position);
-  if (behind > 0.0) then(hand, paced(kGoAside), shifted(now, behind * hold.retreat), hold.open);
-  then(hand, movement_time((off.position - arm.way.back().wrist.position).norm()), off, hold.open);
+  const double behind = std::max(0.0, hold.retreat.dot(off.position - now.position));
+  then(hand, paced(kGoAside), shifted(now, behind * hold.retreat), hold.open);
+  then(hand, skill_.movement_start + skill_.movement_per_bit * kReachBits, off, hold.open);
   const Pose near = shifted(hold.wrist, kNear * hold.retreat);
   then(hand, paced(kApproach), near, hold.open);
   then(hand, paced(kClose), near, hold.near);
@@ -381,10 +382,10 @@ void FloatingPerson::let_go(double delay) {
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     Arm& arm = arms_[hand];
     if (!arm.on_rail && !in_hand_) continue;
-    const Pose wrist = arm.way.back().wrist;
+    const Pose wrist = arm.way.back().wrist, near = shifted(wrist, kNear * arm.retreat);
     then(hand, delay, wrist, arm.way.back().posture);
-    then(hand, paced(kOpen), wrist, arm.near);
-    then(hand, paced(kOpen), wrist, arm.open);
+    then(hand, paced(kOpen), near, arm.near);
+    then(hand, paced(kOpen), near, arm.open);
     then(hand, paced(kRetreat), shifted(wrist, kOff * arm.retreat), arm.open);
     arm.on_rail = false;
     busy_until_ = std::max(busy_until_, arm.began + arm.way.back().time);
@@ -400,8 +401,10 @@ void FloatingPerson::rest_hands(double time) {
   }
 }
 
-double FloatingPerson::movement_time(double distance) const {
-  return skill_.movement_start + skill_.movement_per_bit * std::log2(distance / kHoldWidth + 1.0);
+/// From a decision until the hand holds what it takes.
+double FloatingPerson::take_time() const {
+  return paced(kGoAside + kApproach + kClose + kGrip) + skill_.movement_start +
+         skill_.movement_per_bit * kReachBits;
 }
 
 // ---- Objects.
@@ -423,8 +426,7 @@ void FloatingPerson::bring(double time, const FloatingGoal& goal) {
   drift(time);
   for (const auto& [hand, in_body] : holds_) {
     Hold hold = in_body;
-    const double takes = movement_time(away.norm()) + paced(kApproach + kClose);
-    const Pose object = expected(sight.object, sight.twist, time + takes - past_.front().time);
+    const Pose object = expected(sight.object, sight.twist, time + take_time() - past_.front().time);
     hold.wrist = object * hold.wrist;
     hold.retreat = object.orientation * hold.retreat;
     take(time, hand, hold);
@@ -491,9 +493,11 @@ void FloatingPerson::work(double time, const FloatingGoal& goal) {
     }
     if (speed > 2.0 * kStill) return stop(time);
   } else {
-    const bool astray = (sight.body.position - start_).norm() > kAstray;
-    if (on_rail || astray || speed > 2.0 * kStill) {
-      if (!come_to_rest(time, astray ? std::optional<Vector3>(start_) : std::nullopt, kAstray)) return;
+    const Pose after = expected(sight.body, sight.body_twist, 2.0);
+    const bool astray = (after.position - start_.position).norm() > kAstray ||
+                        after.orientation.angularDistance(start_.orientation) > kAskew;
+    if (on_rail || astray) {
+      if (!come_to_rest(time, start_.position)) return;
       if (on_rail) return let_go(0.0);
     }
   }
@@ -501,9 +505,10 @@ void FloatingPerson::work(double time, const FloatingGoal& goal) {
   // Sight corrects a hand at a latch, or beside one on a rail. A free body would be pulled after its handle.
   begin(time, kRight, on_rail || goal.skill != Skilled::pull_hatch ? Frame::seen : Frame::path);
   const Vector3 by = object_.start.position - kHatchScene + random_.gaussian_vector(skill_.placing_error);
-  double ready = paced(kGoAside);
+  const double ready = paced(kGoAside), duration = on_rail ? 1.0 : kFlick;
   for (Keyframe key : hatch_motion(goal.skill)) {
-    key.time += ready;
+    key.time = ready + duration * key.time;
+    key.velocity /= duration;
     key.wrist.position += by;
     if (key.centre) *key.centre += by;
     arms_[kRight].way.push_back(key);

@@ -79,7 +79,7 @@ class FloatingPerson : public Person {
   };
 
   void decide(double time);
-  bool come_to_rest(double time, const std::optional<Vector3>& place, double tolerance);
+  bool come_to_rest(double time, const std::optional<Vector3>& place);
   void go_along(double time, const Vector3& at, const Vector3& ahead);
   void bring(double time, const FloatingGoal& goal);
   void carry(double time, const Vector3& place);
@@ -105,7 +105,7 @@ class FloatingPerson : public Person {
   const Rail& nearest_rail(const Vector3& to) const;
   Pose frame(double time, Frame frame) const;
   Pose rest_pose(std::size_t hand) const;
-  double movement_time(double distance) const;
+  double take_time() const;
   double paced(double seconds) const { return skill_.pace * seconds; }
 
   OperatorSkill skill_;
@@ -123,10 +123,10 @@ class FloatingPerson : public Person {
   std::array<Arm, kHands> arms_;
   std::array<HandPlace, kHands> shown_;
   BodyPath path_;
-  Twist deviation_;                  ///< of the body from its path, as far as it is corrected [m], [rad]
-  Twist deviation_rate_;             ///< [m/s], [rad/s]
-  Vector3 start_ = Vector3::Zero();  ///< of the body at first
-  int stops_ = 0;                    ///< since hands took the rail
+  Twist deviation_;       ///< of the body from its path, as far as it is corrected [m], [rad]
+  Twist deviation_rate_;  ///< [m/s], [rad/s]
+  Pose start_;            ///< of the body at first
+  int stops_ = 0;         ///< since hands took the rail
   double last_time_ = 0.0;
   double busy_until_ = 0.0;
   bool in_hand_ = false;  ///< the object, as felt by closed hands
