@@ -423,14 +423,12 @@ void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) 
 void free_flight(const Body& body, const Vector3& gravity, double step, BodyState& state) {
   if (!body.flies) return;
   fly_on(body.mass, gravity, step, state);
-  const Turn turn = turn_of(quickness(body), state.angular_momentum, step);
-  if (turn == Turn::long_one) turn_far(body, state.angular_momentum, step, state.pose.orientation);
-  if (turn != Turn::short_one) return;
   // A person floats slowly. Objects keep to one algorithm.
   if (body.is_operator && is_slow(body, state.angular_momentum, step))
-    turn_slowly(body, state.angular_momentum, step, state.pose.orientation);
-  else
-    turn_shortly(body, state.angular_momentum, step, state.pose.orientation);
+    return turn_slowly(body, state.angular_momentum, step, state.pose.orientation);
+  const Turn turn = turn_of(quickness(body), state.angular_momentum, step);
+  if (turn == Turn::long_one) turn_far(body, state.angular_momentum, step, state.pose.orientation);
+  if (turn == Turn::short_one) turn_shortly(body, state.angular_momentum, step, state.pose.orientation);
 }
 
 //     quickness |L|^2 h^2 <= 1,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "holds.h"
 #include "motions.h"
 #include "mr_hand_interaction/scene/scene.h"
 #include "operator.h"
@@ -29,9 +30,8 @@ struct FloatingGoal {
 /// reaction time ago. The same seed and sights give the same bits.
 class FloatingPerson : public Person {
  public:
-  /// One goal for each of the task's. Holds the cylinders among the surroundings' fixtures that fit into a
-  /// hand, and an object by two upright bars, or with the right hand by grasp_of(). Throws
-  /// std::invalid_argument without an operator or rail, and as grasp_of() does.
+  /// One goal for each of the task's. Throws std::invalid_argument without an operator, and as rails_of() and
+  /// holds_of() do.
   FloatingPerson(const OperatorSkill& skill, std::vector<FloatingGoal> goals, const Scene& surroundings,
                  const Body& object, std::uint64_t seed);
 
@@ -42,16 +42,6 @@ class FloatingPerson : public Person {
  private:
   static constexpr std::size_t kLeft = 0, kRight = 1, kHands = 2;
 
-  struct Rail {
-    Vector3 centre, axis;  ///< axis: unit [world]
-    double half_length, radius;
-  };
-  /// A hand on something, in its frame.
-  struct Hold {
-    Pose wrist;
-    HandPosture open, near, closed;
-    Vector3 retreat;
-  };
   /// Frame of a hand's path: the operator's; or world, with the body on its foreseen path, or where that is
   /// corrected by what is seen. A free body does not follow by sight what its hand holds: with a reaction
   /// time's delay it would swing.
@@ -100,8 +90,7 @@ class FloatingPerson : public Person {
   void begin(double time, std::size_t hand, Frame frame);
   void then(std::size_t hand, double duration, const Pose& wrist, const HandPosture& posture,
             const Vector3& velocity = Vector3::Zero());
-  Hold on_rail(std::size_t hand, const Vector3& at, const Rail& rail, const Quaternion& body) const;
-  static double distance(const Vector3& from, const Rail& rail);
+  static std::size_t arm_of(Side side) { return side == Side::left ? kLeft : kRight; }
   const Rail& nearest_rail(const Vector3& to) const;
   Pose frame(double time, Frame frame) const;
   Pose rest_pose(std::size_t hand) const;
@@ -115,7 +104,7 @@ class FloatingPerson : public Person {
   Matrix3 inertia_;  ///< of it, body axes
   std::vector<Rail> rails_;
   Body object_;
-  std::vector<std::pair<std::size_t, Hold>> holds_;  ///< of the object: hand and hold, in the body's frame
+  std::vector<std::pair<Side, Hold>> holds_;  ///< of the object, in its frame
   Random random_;
   std::array<Tremor, kHands> tremor_;
 
