@@ -283,12 +283,13 @@ def afloat():
     """Ten beginners and ten veterans of seed 1 at the tasks for people who float."""
     folder, lines = tempfile.mkdtemp(), []
     try:
-        for task in FLOATING_TASKS:
-            run('simulated_study', '--output', os.path.join(folder, task), '--task', task, '--model', 'implicit', '--gravity', '0',
-                '--operators', '1-20', '--group-size', '10')
-            trials = _trials_in(os.path.join(folder, task))
+        for task, *options in [(task,) for task in FLOATING_TASKS] + [('hatch_0g', '--free-hands')]:
+            output = os.path.join(folder, '_'.join([task, *options]))
+            run('simulated_study', '--output', output, '--task', task, '--model', 'implicit', '--gravity', '0',
+                '--operators', '1-20', '--group-size', '10', *options)
+            trials = _trials_in(output)
             done = trials[trials['result'] == 'completed']
-            lines.append('`%s` %s, in %s s' % (task, ' and '.join(
+            lines.append('`%s`%s %s, in %s s' % (task, ' with both hands free' if options else '', ' and '.join(
                 '%d' % (done['group'] == group).sum() for group in ('beginner', 'veteran')), *_means(done, ('completion_time', 1, 1))))
     finally:
         shutil.rmtree(folder)

@@ -38,6 +38,11 @@ Vector3 MovingBody::velocity(double time, const Vector3& arm) const {
   return twist.linear + time * acceleration + twist.angular.cross(arm);
 }
 
+void CarrierMotion::carry(const Vector3& point, PhalanxMotion& motion) const {
+  motion.velocity = rotation * motion.velocity + velocity(point);
+  motion.spread = rotation * motion.spread + twist.angular.cross(motion.axis);
+}
+
 /// The velocity of a cubic is a mean of D + b, D - b - e and D + e, over T (Bernstein): it is at most |D| and
 /// twice the longest bend, over T. A capsule that has only just appeared has no path: it stands still where
 /// it is.

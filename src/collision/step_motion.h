@@ -63,6 +63,8 @@ struct CarrierMotion {
   Vector3 to_world(const Vector3& local) const { return rotation * local + origin; }
   /// Velocity of a point that moves with the frame [m/s].
   Vector3 velocity(const Vector3& point) const { return twist.linear + twist.angular.cross(point - centre); }
+  /// Turns velocities of a phalanx in the frame, whose start is at `point`, into those in world.
+  void carry(const Vector3& point, PhalanxMotion& motion) const;
 };
 
 /// The path of one end of a capsule through a frame; see HandPath [m].
@@ -127,8 +129,9 @@ inline PhalanxMotion MovingHand::motion(int c, const Capsule& now) const {
   const auto i = static_cast<std::size_t>(c);
   PhalanxMotion motion;
   motion.axis = now.end - now.start;
-  motion.velocity = velocity(start[i], now.start);
-  motion.spread = velocity(end[i], now.end) - motion.velocity;
+  motion.velocity = start[i].displacement(rate);
+  motion.spread = end[i].displacement(rate) - motion.velocity;
+  if (carrier != nullptr) carrier->carry(now.start, motion);
   motion.spin = palm_spin;
   const double length_squared = motion.axis.squaredNorm();
   if (length_squared > 0.0) {

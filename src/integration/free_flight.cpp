@@ -338,6 +338,24 @@ void turn_on(double cosine, const Triple& sine, Quaternion& q) {
   q = Quaternion(w + (w_more * w - u.dot(vector)), u.x + more.x, u.y + more.y, u.z + more.z);
 }
 
+/// A vector in the body's axes.
+Triple to_body(const Quaternion& q, const Triple& world) {
+  const Triple u{q.x(), q.y(), q.z()}, across = world.cross(u), twice = across + across;
+  return world + q.w() * twice + twice.cross(u);
+}
+
+/// A body's principal axes, in its frame.
+struct PrincipalAxes {
+  explicit PrincipalAxes(const Body& body)
+      : x(triple(body.principal_axes.col(0))),
+        y(triple(body.principal_axes.col(1))),
+        z(triple(body.principal_axes.col(2))) {}
+  Triple along(const Triple& v) const { return {x.dot(v), y.dot(v), z.dot(v)}; }
+  Triple to_body(const Triple& v) const { return v.x * x + v.y * y + v.z * z; }
+
+  Triple x, y, z;
+};
+
 /// free_rotation() for short rotations, without roots and with few divisions. It multiplies the shortest
 /// rotation of the momentum by the rotation about it. The product has the norm sqrt(1 - e) if the scalar part
 /// of the first is 1 - e and the vector of the second is along m + n / 2.
@@ -348,18 +366,14 @@ void turn_on(double cosine, const Triple& sine, Quaternion& q) {
 /// as m x (n x m) = n L^2 - m (m.n) = n L^2 + m n^2 / 2. cos and sin are those of half the angle; `sine`
 /// includes 1 / L, so no root of L^2 is needed.
 void turn_shortly(const Body& body, const Vector3& angular_momentum, double step, Quaternion& q) {
-  const Triple momentum = triple(angular_momentum);
-  const Triple u{q.x(), q.y(), q.z()}, across = momentum.cross(u), twice = across + across;
-  const Triple local = momentum + q.w() * twice + twice.cross(u);
+  const Triple local = to_body(q, triple(angular_momentum));
   if (spread(body) == 0.0) {
     // In a body with equal moments the momentum is constant; the body rotates about it at L / I.
     const About turn = about(0.5 * step * body.inverse_moments.x(), local.dot(local));
     return turn_on(turn.cosine, turn.sine * local, q);
   }
-  const Triple axes[] = {triple(body.principal_axes.col(0)), triple(body.principal_axes.col(1)),
-                         triple(body.principal_axes.col(2))};
-  const Triple m{axes[0].dot(local), axes[1].dot(local), axes[2].dot(local)};
-  const Triple moments = triple(body.inverse_moments);
+  const PrincipalAxes axes(body);
+  const Triple m = axes.along(local), moments = triple(body.inverse_moments);
   const double over = 1.0 / m.dot(m);
   const MomentumPath path(m, moments);
   const Triple n = path.after(step);
@@ -369,7 +383,29 @@ void turn_shortly(const Body& body, const Vector3& angular_momentum, double step
   const double root_over = series(e, 1.0, 1.0 / 2.0, 3.0 / 8.0, 5.0 / 16.0, 35.0 / 128.0);
   const double cosine = turn.cosine * root_over, sine = turn.sine * root_over;
   const Triple v = 0.5 * cosine * over * n.cross(m) + sine * (m + 0.5 * n);
-  turn_on(cosine - cosine * e, v.x * axes[0] + v.y * axes[1] + v.z * axes[2], q);
+  turn_on(cosine - cosine * e, axes.to_body(v), q);
+}
+
+/// Largest rotation of an operator in a step that three terms give to rounding [rad]: 0.05 rad/s at 1 ms.
+constexpr double kSlowAngle = 5e-5;
+
+bool is_slow(const Body& body, const Vector3& angular_momentum, double step) {
+  const double rate = body.inverse_moments.maxCoeff() * step;
+  return rate * rate * angular_momentum.squaredNorm() <= kSlowAngle * kSlowAngle;
+}
+
+/// free_rotation() for slow rotations. With w the angular velocity, and primes for rates in the body, the
+/// body rotates by the vector (Magnus 1954)
+///
+///     h w + h^2 w' / 2 + h^3 (w'' + w x w' / 2) / 6,     a term of h^4 being below rounding
+void turn_slowly(const Body& body, const Vector3& angular_momentum, double step, Quaternion& q) {
+  const PrincipalAxes axes(body);
+  const Triple m = axes.along(to_body(q, triple(angular_momentum))), moments = triple(body.inverse_moments);
+  const Triple w = each(moments, m), m1 = m.cross(w), w1 = each(moments, m1),
+               w2 = each(moments, m1.cross(w) + m.cross(w1));
+  const Triple by = step * (w + 0.5 * step * (w1 + step / 3.0 * (w2 + 0.5 * w.cross(w1))));
+  const About turn = about(0.5, by.dot(by));
+  turn_on(turn.cosine, turn.sine * axes.to_body(by), q);
 }
 
 // x += h p / m + h^2 g / 2 with p at the start of the step, then p += m h g. If contacts were solved
@@ -387,6 +423,9 @@ void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) 
 void free_flight(const Body& body, const Vector3& gravity, double step, BodyState& state) {
   if (!body.flies) return;
   fly_on(body.mass, gravity, step, state);
+  // A person floats slowly. Objects keep to one algorithm.
+  if (body.is_operator && is_slow(body, state.angular_momentum, step))
+    return turn_slowly(body, state.angular_momentum, step, state.pose.orientation);
   const Turn turn = turn_of(quickness(body), state.angular_momentum, step);
   if (turn == Turn::long_one) turn_far(body, state.angular_momentum, step, state.pose.orientation);
   if (turn == Turn::short_one) turn_shortly(body, state.angular_momentum, step, state.pose.orientation);

@@ -25,7 +25,8 @@ const char* const kHelp =
     "  --gravity G              in g, from 0 to 10; again for more; default: 0 and 1\n"
     "  --task NAME|FILE         default: pick_and_place\n"
     "  --set KEY=VALUE          a parameter, as in config/default.yaml; again for more\n"
-    "  --seed N                 a whole number; default 1\n";
+    "  --seed N                 a whole number; default 1\n"
+    "  --free-hands             afloat, operators work without a hand on a rail\n";
 
 constexpr long kMaxCount = 1000000;           // of integers
 constexpr double kStandardGravity = 9.80665;  // [m/s^2]
@@ -37,7 +38,7 @@ struct Study {
   std::vector<double> gravities;
   std::vector<std::pair<std::string, std::string>> settings;
   std::uint64_t seed = 1;
-  bool help = false;
+  bool free_hands = false, help = false;
 };
 
 void read_operators(const Given& given, Study& study) {
@@ -63,6 +64,7 @@ Study read_arguments(const std::vector<std::string>& arguments) {
   line.each("--set", "KEY=VALUE", [&](const Given& given) { study.settings.push_back(given.setting()); });
   line.once("--seed", "N",
             [&](const Given& given) { study.seed = static_cast<std::uint64_t>(given.whole(0, kMaxCount)); });
+  line.flag("--free-hands", study.free_hands);
   study.help = !line.read(arguments);
   if (study.help) return study;
   if (study.output.empty()) throw UsageError("--output is missing: --output DIR");
@@ -102,13 +104,14 @@ void play_session(const Study& study, int person, const std::string& model, doub
   header.participant = name;
   header.group = person <= study.group_size ? "beginner" : "veteran";
   header.handedness = "right";
-  header.condition = model;
+  header.condition = study.free_hands ? model + "_free_hands" : model;
   header.seed = study.seed;
   header.simulated = true;
   header.software = MR_HAND_INTERACTION_VERSION;
-  const OperatorSkill skill = draw_skill(header.group, seeds.bits());
+  OperatorSkill skill = draw_skill(header.group, seeds.bits());
+  skill.holds_rail = !study.free_hands;
   const std::uint64_t trials = seeds.bits();
-  const std::string folder = study.output + "/" + model + "_" + strength + "/" + name;
+  const std::string folder = study.output + "/" + header.condition + "_" + strength + "/" + name;
   const SessionSetup setup = session_setup(study.task, task, stage.configuration, stage.scene_folders,
                                            stage.scene_options, MR_HAND_INTERACTION_VERSION);
   Session session(task, header, static_cast<std::uint64_t>(person - 1), folder, 0, setup);

@@ -91,10 +91,9 @@ void IslandProblem::begin(const ContactStep& step, const Island& island,
     // Problems that converge do so in one or two iterations. The large-island solver takes the others.
     effort_.iterations = 6, effort_.limits = 0, effort_.anew = false;
   } else if (step.operators != nullptr && island.links.size() == 0) {
-    const Body& body = step.scene.bodies[masses_[0].body];
-    const int op = sole_operator(step, island);
-    if (op >= 0 && body.mass > kMinCoupledMassRatio * step.scene.bodies[static_cast<std::size_t>(op)].mass)
-      couple(step, body, step.bodies[masses_[0].body], static_cast<std::size_t>(op));
+    const std::size_t body = masses_[0].body;
+    const int op = coupled_operator(step, island);
+    if (op >= 0) couple(step, step.scene.bodies[body], step.bodies[body], static_cast<std::size_t>(op));
   }
 }
 
@@ -145,22 +144,28 @@ void IslandProblem::begin_body(const ContactStep& step, std::size_t index) {
   weights_.segment<3>(at + 3).setConstant(3.0 * body.mass / body.inertia.trace());
 }
 
-/// Returns the operator of all hands that act on the body; -1 if none or several.
-int IslandProblem::sole_operator(const ContactStep& step, const Island& island) const {
+/// Returns the operator with whom the island's body is solved: that of all hands that act on it, if the body
+/// is heavy enough. -1 if there is none, or several.
+int IslandProblem::coupled_operator(const ContactStep& step, const Island& island) const {
+  const IslandBody& body = *island.bodies.begin();
+  const double limit = step.scene.bodies[body.body].mass / kMinCoupledMassRatio;
+  const auto is_light = [&](int op) { return step.scene.bodies[static_cast<std::size_t>(op)].mass < limit; };
+  const std::vector<Operator>& operators = step.scene.operators;
+  if (std::none_of(operators.begin(), operators.end(), [&](const Operator& o) { return is_light(o.body); }))
+    return -1;
   int op = -1;
   bool several = false;
   const auto see = [&](std::size_t hand) {
     several = several || (op >= 0 && op != (*step.operators)[hand]);
     op = (*step.operators)[hand];
   };
-  const IslandBody& body = *island.bodies.begin();
   for (std::size_t i = body.first; i < body.last; ++i) {
     if (!step.contacts[i].ignored) see(step.contacts[i].key.hand);
   }
   for (const Grip& grip : step.grips) {
     if (grip.active && grip.body == body.body) see(grip.hand);
   }
-  return several ? -1 : op;
+  return several || op < 0 || !is_light(op) ? -1 : op;
 }
 
 // The springs' wrench acts on the body and, with opposite sign, on the operator. So the body's velocity W

@@ -132,7 +132,7 @@ class IslandProblem {
   void begin_body(const ContactStep& step, std::size_t index);
   void begin_bodies(std::size_t bodies, bool in_joints);
   void make_rows(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
-  int sole_operator(const ContactStep& step, const Island& island) const;
+  int coupled_operator(const ContactStep& step, const Island& island) const;
   void couple(const ContactStep& step, const Body& body, const BodyState& state, std::size_t op);
   void finish_bodies(bool agree, ContactStep& step) const;
   void settle_rows(ContactStep& step, const Island& island) const;

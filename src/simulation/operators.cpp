@@ -140,9 +140,10 @@ bool Operators::begin_step(double left, const SimulationState& state) {
 void Operators::begin_contacts(SimulationState& state) {
   touched_.clear();
   touches_fixture_ = false;
+  std::size_t noted = scene_.bodies.size();
   for (Contact& contact : state.contacts) {
     contact.carrier_inverse_mass = 0.0;
-    note_momenta(contact.key.body, state);
+    if (contact.key.body != noted) note_momenta(noted = contact.key.body, state);
     if (contact.struck || contact.ignored) continue;
     const auto o = static_cast<std::size_t>(owners_[contact.key.hand]);
     const Body& body = scene_.bodies[static_cast<std::size_t>(scene_.operators[o].body)];
@@ -155,7 +156,6 @@ void Operators::begin_contacts(SimulationState& state) {
 }
 
 void Operators::note_momenta(std::size_t body, const SimulationState& state) {
-  if (!touched_.empty() && touched_.back().body == body) return;
   if (scene_.bodies[body].fixed) {
     touches_fixture_ = true;
     return;

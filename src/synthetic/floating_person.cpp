@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <variant>
 
 #include "../math/minimum_jerk.h"
 #include "../math/rotation.h"
@@ -11,14 +10,12 @@
 namespace mrhi {
 namespace {
 
-constexpr double kMaxRailRadius = 0.03, kMinRailLength = 0.3;  // of a cylinder that is held as a rail [m]
-constexpr double kMaxBar = 0.03, kMinBar = 0.1;  // width and length of a bar by which an object is held [m]
-constexpr double kApart = 0.34;                  // of each hand on a rail from the body's middle [m]
-constexpr double kOff = 0.08;                    // from where a hand goes straight to what it takes [m]
-constexpr double kArm = 0.8;                     // [m] places farther away are out of reach
-constexpr double kNear = 0.004;                  // of the palm before the fingers close [m]
-constexpr double kHoldWidth = 0.02;              // for Fitts' law [m]
-constexpr double kCorrecting = 2.0;              // rate of correcting a seen error [1/s]
+constexpr double kApart = 0.34;      // of each hand on a rail from the body's middle [m]
+constexpr double kOff = 0.08;        // from where a hand goes straight to what it takes [m]
+constexpr double kArm = 0.8;         // [m] places farther away are out of reach
+constexpr double kNear = 0.004;      // of the palm before the fingers close [m]
+constexpr double kReachBits = 4.2;   // of Fitts' law: a reach of kApart to a hold of 2 cm
+constexpr double kCorrecting = 2.0;  // rate of correcting a seen error [1/s]
 constexpr double kApproach = 0.4, kClose = 0.4, kGrip = 0.5, kOpen = 0.25, kRetreat = 0.4,
                  kGoAside = 0.7;  // times at pace 1 [s]
 
@@ -34,48 +31,21 @@ constexpr double kLost = 0.4;     // of the body from its foreseen path [m]
 constexpr double kStill = 0.01, kStillTurn = 0.03;  // of a body at rest [m/s], [rad/s]
 
 constexpr double kCarry = 0.05;                  // mean speed of a heavy object in two hands [m/s]
-constexpr double kExact = 0.012;                 // of a carried object from its place [m]
+constexpr double kExact = 0.025;                 // of a carried object from its place [m]
 constexpr double kPatience = 3.0;                // for what was put in its place [s]
 constexpr double kThrow = 0.8;                   // speed of a throw [m/s]
 constexpr double kSwing = 0.25, kRelease = 0.3;  // way before the hand opens [m]; duration of that [s]
-constexpr double kAstray = 0.25;                 // of the body from where it works [m]
-constexpr double kCatchable = 0.1;               // faster objects are not taken [m/s]
-const Vector3 kHatchScene(0.0, 0.15, 0.25);      // of the hatch's wall in its shipped scene
+constexpr double kAstray = 0.25, kAskew = 0.4;   // of the body from where it works [m], [rad]
+// Without a hold, practised motions are done in this fraction of their time: a shorter push drives the body
+// away less, as a latch resists with the same force at any speed.
+constexpr double kFlick = 0.5;
+constexpr double kWork = 2.0;                // what such a push takes [s]
+constexpr double kCatchable = 0.1;           // faster objects are not taken [m/s]
+const Vector3 kHatchScene(0.0, 0.15, 0.25);  // of the hatch's wall in its shipped scene
 
 Pose expected(const Pose& pose, const Twist& twist, double ahead) {
   return {pose.position + ahead * twist.linear,
           (rotation_by(ahead * twist.angular) * pose.orientation).normalized()};
-}
-
-double side(std::size_t hand) {
-  return hand == 0 ? -1.0 : 1.0;
-}
-
-/// Bars along the body's z by which two hands hold it, from left to right.
-std::vector<Vector3> bars_of(const Body& body) {
-  std::vector<Vector3> bars;
-  for (const PlacedShape& shape : body.shapes) {
-    const auto* box = std::get_if<Box>(&shape.shape);
-    if (box == nullptr || shape.pose.orientation.angularDistance(Quaternion::Identity()) > 1e-6) continue;
-    const Vector3 size = 2.0 * box->half_extents;
-    if (size.x() <= kMaxBar && size.y() <= kMaxBar && size.z() >= kMinBar)
-      bars.push_back(shape.pose.position);
-  }
-  std::sort(bars.begin(), bars.end(), [](const Vector3& a, const Vector3& b) { return a.x() < b.x(); });
-  return bars;
-}
-
-/// Grasp of an object that is to fly in a direction: of those that are equal by its symmetry, the one that
-/// closes and leaves across that direction with the least rotation.
-Grasp grasp_to_throw(const Body& object, const Vector3& direction) {
-  const Grasp usual = grasp_of(object);
-  const auto cost = [&](const Quaternion& turn) {
-    return std::abs(direction.dot(turn * usual.contacts.front().normal)) +
-           std::abs(direction.dot(turn * usual.retreat)) + 0.1 * turn.angularDistance(Quaternion::Identity());
-  };
-  const std::vector<Quaternion> turns = box_symmetries(object);
-  return usual.turned(*std::min_element(turns.begin(), turns.end(),
-                                        [&](const auto& a, const auto& b) { return cost(a) < cost(b); }));
 }
 
 }  // namespace
@@ -95,36 +65,11 @@ FloatingPerson::FloatingPerson(const OperatorSkill& skill, std::vector<FloatingG
   link_in_body_ = person.link_in_body;
   mass_ = person.mass;
   inertia_ = person.inertia;
-  for (const Body& body : surroundings.bodies) {
-    if (!body.fixed || body.shapes.size() != 1) continue;
-    const auto* bar = std::get_if<Cylinder>(&body.shapes[0].shape);
-    if (bar == nullptr || bar->radius > kMaxRailRadius || 2.0 * bar->half_length < kMinRailLength) continue;
-    const Pose pose = body.start * body.shapes[0].pose;
-    rails_.push_back({pose.position, pose.orientation * Vector3::UnitZ(), bar->half_length, bar->radius});
-  }
-  if (rails_.empty())
-    throw std::invalid_argument(
-        "a simulated operator who floats needs a hold: the task's scene has no rail; " +
-        std::string("allowed: a scene with a fixture that is one cylinder, at most 6 ") +
-        "cm thick and at least 30 cm long");
+  rails_ = rails_of(surroundings);
   const auto brings = std::find_if(goals_.begin(), goals_.end(), [](const FloatingGoal& goal) {
     return goal.kind == FloatingGoal::Kind::bring;
   });
-  const auto hold_of = [](const Grasp& grasp) {
-    const GraspPostures postures(grasp);
-    return Hold{grasp.wrist, postures.open, postures.near, postures.pressing, grasp.retreat};
-  };
-  if (const std::vector<Vector3> bars = bars_of(object); brings != goals_.end() && bars.size() == kHands) {
-    for (std::size_t hand = 0; hand < kHands; ++hand) {
-      Hold hold = hold_of(shipped_grasp("long_cuboid"));
-      if (hand == kLeft) hold.wrist = mirrored(hold.wrist), hold.retreat.x() *= -1.0;
-      hold.wrist.position += bars[hand];
-      holds_.emplace_back(hand, hold);
-    }
-  } else if (brings != goals_.end()) {
-    holds_.emplace_back(
-        kRight, hold_of(grasp_to_throw(object, (*brings->place - object.start.position).normalized())));
-  }
+  if (brings != goals_.end()) holds_ = holds_of(object, *brings->place);
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     arms_[hand].now = shown_[hand] = {rest_pose(hand), relaxed_posture()};
     begin(0.0, hand, Frame::body);
@@ -200,7 +145,7 @@ HandPlace FloatingPerson::move(double time, const Sight& sight) {
   const bool begins = past_.empty();
   past_.push_back({time, sight});
   if (begins) {
-    start_ = sight.body.position;
+    start_ = sight.body;
     drift(time);
   }
   while (past_.size() > 1 && past_[1].time <= time - skill_.reaction_time) past_.pop_front();
@@ -225,7 +170,7 @@ void FloatingPerson::decide(double time) {
     case FloatingGoal::Kind::bring:
       return bring(time, goal);
     case FloatingGoal::Kind::rest:
-      come_to_rest(time, goal.place, kPlaced);
+      come_to_rest(time, goal.place);
       return;
     case FloatingGoal::Kind::work:
       return work(time, goal);
@@ -235,7 +180,7 @@ void FloatingPerson::decide(double time) {
 // ---- The body along rails.
 
 /// Returns whether the body rests.
-bool FloatingPerson::come_to_rest(double time, const std::optional<Vector3>& place, double tolerance) {
+bool FloatingPerson::come_to_rest(double time, const std::optional<Vector3>& place) {
   const Moment& then = past_.front();
   const Twist& twist = then.sight.body_twist;
   const Vector3 at = expected(then.sight.body, twist, time - then.time).position;
@@ -245,17 +190,16 @@ bool FloatingPerson::come_to_rest(double time, const std::optional<Vector3>& pla
   const Rail& rail = nearest_rail(reached);
   const Vector3& axis = rail.axis;
   const double along = axis.dot(off), speed = twist.linear.norm();
-  if (still && off.norm() < tolerance) return true;
-  if (distance(reached, rail) > kArm) {
+  if (still && off.norm() < kPlaced) return true;
+  if (rail.distance(reached) > kArm) {
     rest_hands(time);
     return false;
   }
   const Vector3 ahead =
       std::abs(along) < kPlaced ? Vector3::Zero() : Vector3(std::copysign(1.0, along) * axis);
   if (!arms_[kLeft].on_rail || !arms_[kRight].on_rail) {
-    const double takes = movement_time(kApart) + paced(kApproach + kClose + kGrip);
     const double nearing = ahead.dot(twist.linear);
-    const double wait = nearing > kStill ? (std::abs(along) - kBrake) / nearing - takes : 0.0;
+    const double wait = nearing > kStill ? (std::abs(along) - kBrake) / nearing - take_time() : 0.0;
     stops_ = 0;
     if (wait > 0.0) {
       busy_until_ = time + wait;
@@ -301,43 +245,21 @@ void FloatingPerson::stop(double time) {
   busy_until_ = time + kStop + kSettle + skill_.reaction_time;
 }
 
-double FloatingPerson::distance(const Vector3& from, const Rail& rail) {
-  const Vector3 off = from - rail.centre;
-  const double along = std::clamp(rail.axis.dot(off), -rail.half_length, rail.half_length);
-  return (off - along * rail.axis).norm();
-}
-
-const FloatingPerson::Rail& FloatingPerson::nearest_rail(const Vector3& to) const {
+const Rail& FloatingPerson::nearest_rail(const Vector3& to) const {
   return *std::min_element(rails_.begin(), rails_.end(),
-                           [&](const Rail& a, const Rail& b) { return distance(to, a) < distance(to, b); });
-}
-
-/// The palm towards the rail, the thumb up or to the other hand.
-FloatingPerson::Hold FloatingPerson::on_rail(std::size_t hand, const Vector3& at, const Rail& rail,
-                                             const Quaternion& body) const {
-  const PowerGrip grip(rail.radius);
-  Vector3 dorsal = body * -Vector3::UnitY();
-  dorsal = (dorsal - rail.axis.dot(dorsal) * rail.axis).normalized();
-  const Vector3 inward = body * Vector3(-side(hand), 0.0, 1.0);
-  const Vector3 thumb = std::copysign(1.0, rail.axis.dot(inward)) * rail.axis;
-  Pose wrist = hand_pose(Vector3::Zero(), (side(hand) * thumb).cross(dorsal), dorsal);
-  const double along = std::clamp(rail.axis.dot(at - rail.centre), -rail.half_length, rail.half_length);
-  const Vector3 mirror(1.0, side(hand), 1.0);
-  wrist.position =
-      rail.centre + along * rail.axis - wrist.orientation * Vector3(mirror.cwiseProduct(grip.bar));
-  return {wrist, grip.open, grip.near, grip.closed, dorsal};
+                           [&](const Rail& a, const Rail& b) { return a.distance(to) < b.distance(to); });
 }
 
 void FloatingPerson::take_rail(double time, std::size_t first, std::size_t last, const Vector3& ahead) {
   const Moment& then = past_.front();
-  const double takes = movement_time(kApart) + paced(kApproach + kClose + kGrip);
   if (first == kLeft && last == kRight) drift(time);
-  const Pose body = expected(then.sight.body, then.sight.body_twist, time + takes - then.time);
+  const Pose body = expected(then.sight.body, then.sight.body_twist, time + take_time() - then.time);
   for (std::size_t hand = first; hand <= last; ++hand) {
-    const Vector3 at = body.position + ahead + body.orientation * Vector3(side(hand) * kApart, 0.0, 0.0);
+    const Vector3 at =
+        body.position + ahead + body.orientation * Vector3(hand == kLeft ? -kApart : kApart, 0.0, 0.0);
     const Pose tracked = body * link_in_body_;
     const Rail& rail = nearest_rail(tracked.position + at - body.position);
-    take(time, hand, on_rail(hand, at, rail, body.orientation));
+    take(time, hand, rail.hold(hand == kLeft ? Side::left : Side::right, at, body.orientation));
     arms_[hand].on_rail = true;
   }
 }
@@ -359,9 +281,9 @@ void FloatingPerson::take(double time, std::size_t hand, Hold hold) {
   Arm& arm = arms_[hand];
   arm.retreat = hold.retreat, arm.open = hold.open, arm.near = hold.near;
   const Pose off = shifted(hold.wrist, kOff * hold.retreat), now = arm.way.back().wrist;
-  const double behind = hold.retreat.dot(off.position - now.position);
-  if (behind > 0.0) then(hand, paced(kGoAside), shifted(now, behind * hold.retreat), hold.open);
-  then(hand, movement_time((off.position - arm.way.back().wrist.position).norm()), off, hold.open);
+  const double behind = std::max(0.0, hold.retreat.dot(off.position - now.position));
+  then(hand, paced(kGoAside), shifted(now, behind * hold.retreat), hold.open);
+  then(hand, skill_.movement_start + skill_.movement_per_bit * kReachBits, off, hold.open);
   const Pose near = shifted(hold.wrist, kNear * hold.retreat);
   then(hand, paced(kApproach), near, hold.open);
   then(hand, paced(kClose), near, hold.near);
@@ -381,10 +303,10 @@ void FloatingPerson::let_go(double delay) {
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     Arm& arm = arms_[hand];
     if (!arm.on_rail && !in_hand_) continue;
-    const Pose wrist = arm.way.back().wrist;
+    const Pose wrist = arm.way.back().wrist, near = shifted(wrist, kNear * arm.retreat);
     then(hand, delay, wrist, arm.way.back().posture);
-    then(hand, paced(kOpen), wrist, arm.near);
-    then(hand, paced(kOpen), wrist, arm.open);
+    then(hand, paced(kOpen), near, arm.near);
+    then(hand, paced(kOpen), near, arm.open);
     then(hand, paced(kRetreat), shifted(wrist, kOff * arm.retreat), arm.open);
     arm.on_rail = false;
     busy_until_ = std::max(busy_until_, arm.began + arm.way.back().time);
@@ -400,8 +322,10 @@ void FloatingPerson::rest_hands(double time) {
   }
 }
 
-double FloatingPerson::movement_time(double distance) const {
-  return skill_.movement_start + skill_.movement_per_bit * std::log2(distance / kHoldWidth + 1.0);
+/// From a decision until the hand holds what it takes.
+double FloatingPerson::take_time() const {
+  return paced(kGoAside + kApproach + kClose + kGrip) + skill_.movement_start +
+         skill_.movement_per_bit * kReachBits;
 }
 
 // ---- Objects.
@@ -421,13 +345,12 @@ void FloatingPerson::bring(double time, const FloatingGoal& goal) {
   const Vector3 away = sight.object.position - (sight.body * link_in_body_).position;
   if (away.norm() > kArm || sight.twist.linear.norm() > kCatchable) return rest_hands(time);
   drift(time);
-  for (const auto& [hand, in_body] : holds_) {
+  for (const auto& [side, in_body] : holds_) {
     Hold hold = in_body;
-    const double takes = movement_time(away.norm()) + paced(kApproach + kClose);
-    const Pose object = expected(sight.object, sight.twist, time + takes - past_.front().time);
+    const Pose object = expected(sight.object, sight.twist, time + take_time() - past_.front().time);
     hold.wrist = object * hold.wrist;
     hold.retreat = object.orientation * hold.retreat;
-    take(time, hand, hold);
+    take(time, arm_of(side), hold);
   }
   in_hand_ = true;
   busy_until_ += kSettle + skill_.reaction_time;
@@ -448,7 +371,8 @@ void FloatingPerson::carry(double time, const Vector3& place) {
   const double distance = (place - object.position).norm();
   const double duration = std::max(1.0, distance / kCarry);
   set_path(time, duration, recoil(place - object.position), Twist());
-  for (const auto& [hand, hold] : holds_) {
+  for (const auto& [side, hold] : holds_) {
+    const std::size_t hand = arm_of(side);
     const Keyframe now = arms_[hand].way.back();
     then(hand, duration, Pose{place, Quaternion::Identity()} * (object.inverse() * now.wrist), now.posture);
   }
@@ -464,7 +388,8 @@ void FloatingPerson::throw_to(double time, const Vector3& direction) {
   set_path(time, kAccelerates,
            {turned.linear + kAccelerates * drift.linear, turned.angular + kAccelerates * drift.angular},
            {ends.linear + drift.linear, ends.angular + drift.angular});
-  for (const auto& [hand, hold] : holds_) {
+  for (const auto& [side, hold] : holds_) {
+    const std::size_t hand = arm_of(side);
     const Arm& arm = arms_[hand];
     const Keyframe from = arm.way.back();
     const Pose fast = shifted(from.wrist, kSwing * direction);
@@ -491,9 +416,11 @@ void FloatingPerson::work(double time, const FloatingGoal& goal) {
     }
     if (speed > 2.0 * kStill) return stop(time);
   } else {
-    const bool astray = (sight.body.position - start_).norm() > kAstray;
-    if (on_rail || astray || speed > 2.0 * kStill) {
-      if (!come_to_rest(time, astray ? std::optional<Vector3>(start_) : std::nullopt, kAstray)) return;
+    const Pose after = expected(sight.body, sight.body_twist, kWork);
+    const bool astray = (after.position - start_.position).norm() > kAstray ||
+                        after.orientation.angularDistance(start_.orientation) > kAskew;
+    if (on_rail || astray) {
+      if (!come_to_rest(time, start_.position)) return;
       if (on_rail) return let_go(0.0);
     }
   }
@@ -501,9 +428,10 @@ void FloatingPerson::work(double time, const FloatingGoal& goal) {
   // Sight corrects a hand at a latch, or beside one on a rail. A free body would be pulled after its handle.
   begin(time, kRight, on_rail || goal.skill != Skilled::pull_hatch ? Frame::seen : Frame::path);
   const Vector3 by = object_.start.position - kHatchScene + random_.gaussian_vector(skill_.placing_error);
-  double ready = paced(kGoAside);
+  const double ready = paced(kGoAside), duration = on_rail ? 1.0 : kFlick;
   for (Keyframe key : hatch_motion(goal.skill)) {
-    key.time += ready;
+    key.time = ready + duration * key.time;
+    key.velocity /= duration;
     key.wrist.position += by;
     if (key.centre) *key.centre += by;
     arms_[kRight].way.push_back(key);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "holds.h"
 #include "motions.h"
 #include "mr_hand_interaction/scene/scene.h"
 #include "operator.h"
@@ -29,9 +30,8 @@ struct FloatingGoal {
 /// reaction time ago. The same seed and sights give the same bits.
 class FloatingPerson : public Person {
  public:
-  /// One goal for each of the task's. Holds the cylinders among the surroundings' fixtures that fit into a
-  /// hand, and an object by two upright bars, or with the right hand by grasp_of(). Throws
-  /// std::invalid_argument without an operator or rail, and as grasp_of() does.
+  /// One goal for each of the task's. Throws std::invalid_argument without an operator, and as rails_of() and
+  /// holds_of() do.
   FloatingPerson(const OperatorSkill& skill, std::vector<FloatingGoal> goals, const Scene& surroundings,
                  const Body& object, std::uint64_t seed);
 
@@ -42,16 +42,6 @@ class FloatingPerson : public Person {
  private:
   static constexpr std::size_t kLeft = 0, kRight = 1, kHands = 2;
 
-  struct Rail {
-    Vector3 centre, axis;  ///< axis: unit [world]
-    double half_length, radius;
-  };
-  /// A hand on something, in its frame.
-  struct Hold {
-    Pose wrist;
-    HandPosture open, near, closed;
-    Vector3 retreat;
-  };
   /// Frame of a hand's path: the operator's; or world, with the body on its foreseen path, or where that is
   /// corrected by what is seen. A free body does not follow by sight what its hand holds: with a reaction
   /// time's delay it would swing.
@@ -79,7 +69,7 @@ class FloatingPerson : public Person {
   };
 
   void decide(double time);
-  bool come_to_rest(double time, const std::optional<Vector3>& place, double tolerance);
+  bool come_to_rest(double time, const std::optional<Vector3>& place);
   void go_along(double time, const Vector3& at, const Vector3& ahead);
   void bring(double time, const FloatingGoal& goal);
   void carry(double time, const Vector3& place);
@@ -100,12 +90,11 @@ class FloatingPerson : public Person {
   void begin(double time, std::size_t hand, Frame frame);
   void then(std::size_t hand, double duration, const Pose& wrist, const HandPosture& posture,
             const Vector3& velocity = Vector3::Zero());
-  Hold on_rail(std::size_t hand, const Vector3& at, const Rail& rail, const Quaternion& body) const;
-  static double distance(const Vector3& from, const Rail& rail);
+  static std::size_t arm_of(Side side) { return side == Side::left ? kLeft : kRight; }
   const Rail& nearest_rail(const Vector3& to) const;
   Pose frame(double time, Frame frame) const;
   Pose rest_pose(std::size_t hand) const;
-  double movement_time(double distance) const;
+  double take_time() const;
   double paced(double seconds) const { return skill_.pace * seconds; }
 
   OperatorSkill skill_;
@@ -115,7 +104,7 @@ class FloatingPerson : public Person {
   Matrix3 inertia_;  ///< of it, body axes
   std::vector<Rail> rails_;
   Body object_;
-  std::vector<std::pair<std::size_t, Hold>> holds_;  ///< of the object: hand and hold, in the body's frame
+  std::vector<std::pair<Side, Hold>> holds_;  ///< of the object, in its frame
   Random random_;
   std::array<Tremor, kHands> tremor_;
 
@@ -123,10 +112,10 @@ class FloatingPerson : public Person {
   std::array<Arm, kHands> arms_;
   std::array<HandPlace, kHands> shown_;
   BodyPath path_;
-  Twist deviation_;                  ///< of the body from its path, as far as it is corrected [m], [rad]
-  Twist deviation_rate_;             ///< [m/s], [rad/s]
-  Vector3 start_ = Vector3::Zero();  ///< of the body at first
-  int stops_ = 0;                    ///< since hands took the rail
+  Twist deviation_;       ///< of the body from its path, as far as it is corrected [m], [rad]
+  Twist deviation_rate_;  ///< [m/s], [rad/s]
+  Pose start_;            ///< of the body at first
+  int stops_ = 0;         ///< since hands took the rail
   double last_time_ = 0.0;
   double busy_until_ = 0.0;
   bool in_hand_ = false;  ///< the object, as felt by closed hands

@@ -472,7 +472,7 @@ bool holds(const Scene& scene, std::size_t body, const ScriptedMotion& motion) {
     simulation.advance(frame);
   }
   const SimulationState& state = simulation.state();
-  return !state.interactions.empty() && state.interactions[0].level == InteractionLevel::grasp &&
+  return is_held(body, state) &&
          (state.bodies[body].pose.position - scene.bodies[body].start.position).norm() > kMinCarried;
 }
 

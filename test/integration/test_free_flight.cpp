@@ -158,6 +158,23 @@ TEST(FreeFlight, short_and_long_turns_meet_where_the_ones_end_and_the_others_beg
   }
 }
 
+// An operator's slowest rotations have a series of their own; it leaves out 3e-19 at 0.05 rad/s and 1 ms.
+TEST(FreeFlight, an_operator_who_hardly_turns_turns_as_any_body) {
+  for (const Vector3& direction : {Vector3(1, 2, 3), Vector3(-1, 0.1, 0.01), Vector3(0, 0, 1)}) {
+    Body body = body_of(Vector3(11.0, 12.0, 1.5), 0.03 * direction.normalized());
+    body.is_operator = true;
+    BodyState state = start_state(body);
+    Quaternion by_far = body.start.orientation;
+    for (int i = 0; i < 1000; ++i) {
+      free_flight(body, Vector3::Zero(), 0.001, state);
+      turn_far(body, state.angular_momentum, 0.001, by_far);
+    }
+    // Rounding of 1000 steps.
+    EXPECT_LE((by_far.coeffs() - state.pose.orientation.coeffs()).norm(), 1e-14) << direction.transpose();
+    EXPECT_GT(state.pose.orientation.angularDistance(body.start.orientation), 0.02);
+  }
+}
+
 TEST(FreeFlight, next_to_no_spin_is_none) {
   const Body body = asymmetric_body();
   for (const double size : {0.0, 1e-310, 1e-170, 1e-101, 1e-99}) {

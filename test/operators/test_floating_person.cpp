@@ -69,20 +69,18 @@ TEST(FloatingPerson, veterans_do_all_tasks) {
   }
 }
 
-/// Of these six veterans three complete the task with both hands free: latches and hatch push them away. A
-/// rail then serves to come back.
-TEST(FloatingPerson, opens_the_hatch_with_free_hands_later_and_not_always) {
+/// Latches and hatch push them away, so they push shortly, and come back along a rail where they drift.
+TEST(FloatingPerson, veterans_open_the_hatch_with_both_hands_free_and_take_longer) {
   constexpr std::uint64_t kPersons = 6;
-  int completed = 0;
+  double times = 0.0, completed = 0.0;
   for (std::uint64_t person = 1; person <= kPersons; ++person) {
     const TrialRow row = by_veteran("hatch_0g", person, false);
     if (row.result != TrialResult::completed) continue;
-    ++completed;
-    EXPECT_GT(row.measures.completion_time, 30.0) << "with a hand on a rail it takes 22 s";
-    EXPECT_GT(row.measures.touches, 8);
+    ++completed, times += row.measures.completion_time;
+    EXPECT_GE(row.measures.touches, 4) << "two latches, the handle, a rail or a second try";
   }
-  EXPECT_GE(completed, 1);
-  RecordProperty("completed", completed);
+  EXPECT_GE(completed, kPersons - 1);
+  EXPECT_GT(times / completed, 25.0) << "with a hand on a rail it takes 22 s";
 }
 
 TEST(FloatingPerson, same_seed_same_bits) {

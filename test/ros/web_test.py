@@ -42,6 +42,9 @@ from waiting import wait_until  # noqa: E402
 TOKEN = "test"
 RATE = 60  # of the scripted hand, frames per second
 CARRIED = 0.06  # m, of 0.08
+POST = ("<robot name='afloat'><link name='world'/>"
+        "<link name='post'><collision><geometry><box size='0.1 0.1 0.1'/></geometry></collision></link>"
+        "<joint name='far' type='fixed'><parent link='world'/><child link='post'/><origin xyz='0 0 -1'/></joint></robot>")
 GRASP = [InteractionEvent.GRASP_BEGIN, InteractionEvent.GRASP_END]
 
 
@@ -320,6 +323,89 @@ class WebTest(unittest.TestCase):
             first, second = sorted(together[0].hands, key=lambda hand: hand.palm.position.x)
             self.assertNotEqual(first.id, second.id)
             self.assertAlmostEqual(second.palm.position.x - first.palm.position.x, 0.5, delta=1e-3)
+
+    def test_two_people_who_float_have_frames_of_their_own_and_keep_all_momentum(self):
+        """Ann, at rest, pushes a block; Ben drifts. Their hands are the same in the spaces of their headsets."""
+        scene = os.path.join(self.folder, "afloat.urdf")
+        for name, text in ((scene, POST),
+                           (scene[:-4] + "yaml", "operators: {ann: {}, ben: {start: [0, 1, 0], twist: [0.02, 0, 0, 0, 0, 0]}}\n"
+                            "bounds: {min: [-5, -5, -5], max: [5, 5, 5]}")):
+            with open(name, "w", encoding="utf-8") as file:
+                file.write(text)
+        tracked, shown, states = [], {}, []
+        for topic, kind, take in (("hand_frame", HandFrame, lambda frame: len(frame.hands) == 2 and tracked.append(frame)),
+                                  ("rendered_hands", HandFrame, lambda frame: shown.update({frame.header.stamp: frame})),
+                                  ("objects", ObjectStateArray, states.append)):
+            self.addCleanup(rospy.Subscriber(topic, kind, take, queue_size=1000).unregister)
+        row = next(row for row in recording(self.folder, RATE) if row["palm_x"])
+        points = numpy.array([(x, -z, y) for x, y, z in joints(row, 25)])
+        pushes, over = threading.Event(), threading.Event()
+
+        async def be_there(place, push):
+            async with aiohttp.ClientSession() as session:
+                origin = "http://127.0.0.1:%d" % self.port
+                async with session.ws_connect("%s/%s/socket" % (origin, TOKEN), origin=origin, max_msg_size=0) as door:
+                    await doors.put_hands_in(door, place)
+                    pushed = 0.0
+                    while not over.is_set():
+                        if push and pushes.is_set():
+                            pushed = min(pushed + 0.3 / RATE, 0.2)
+                        hand = numpy.column_stack([points + [pushed, 0, 0], numpy.full(25, 0.008)])
+                        numbers = 100 * [math.nan] + list(hand.flat)
+                        await door.send_bytes(struct.pack("<d200f50B", 1e3 * time.monotonic(), *numbers, *(25 * [0] + 25 * [2])))
+                        await asyncio.sleep(1.0 / RATE)
+
+        async def two():
+            first = asyncio.ensure_future(be_there([0, 0, 0, 0, 0, 0, 1], True))
+            while not self.mounts and not over.is_set():  # the first is person 1
+                await asyncio.sleep(0.02)
+            await asyncio.gather(first, be_there([0, 0, 0, 0, 0, 0, 1], False))
+
+        def of(name, message):
+            return next((state for state in message.objects if state.name == name), None)
+
+        def place(pose):
+            return numpy.array([pose.position.x, pose.position.y, pose.position.z])
+
+        def momentum(message):
+            return sum(state.mass * numpy.array([state.twist.linear.x, state.twist.linear.y, state.twist.linear.z])
+                       for state in message.objects)
+        with self.launch("people:=2", "scene:=" + scene), Viewer(self.port) as viewer:
+            wait_until(lambda: viewer.bodies, "the scene")
+            people = threading.Thread(target=lambda: asyncio.run(two()), daemon=True)
+            people.start()
+            try:
+                wait_until(lambda: tracked and states, "two hands")
+                first, second = sorted(tracked[-1].hands, key=lambda hand: hand.id % 2)
+                self.assertTrue(numpy.allclose(place(first.palm), place(second.palm), atol=1e-3))
+                ends = numpy.array([(bone.end.x, bone.end.y, bone.end.z) for bone in first.phalanges])
+                box = SpawnObjectRequest(name="block", shape="box", size=[0.2, 0.4, 0.4], mass=5.0)
+                box.pose.orientation.w = 1.0
+                box.pose.position = Point(ends[:, 0].max() + 0.13, ends[:, 1].mean(), ends[:, 2].mean())
+                rospy.wait_for_service("/interaction_node/spawn", 60)
+                self.assertTrue(rospy.ServiceProxy("/interaction_node/spawn", SpawnObject)(box).success)
+                wait_until(lambda: of("block", states[-1]), "the block")
+                pushes.set()
+                wait_until(lambda: of("block", states[-1]).twist.linear.x > 0.05, "the push")
+                wait_until(lambda: of("ben", states[-1]).pose.position.x > 0.1, "Ben's drift")
+            finally:
+                over.set()
+                people.join(10)
+        sums = numpy.array([momentum(message) for message in states])
+        self.assertLess(abs(sums - [80 * 0.02, 0, 0]).max(), 1e-12)
+        self.assertLess(of("ann", states[-1]).twist.linear.x, -0.05 * 5 / 80)
+        self.assertAlmostEqual(of("ben", states[-1]).twist.linear.x, 0.02, delta=1e-15)
+        carried = []
+        for message in states:
+            hands = sorted(shown[message.header.stamp].hands, key=lambda hand: hand.id % 2) if message.header.stamp in shown else []
+            if len(hands) == 2:
+                carried.append([place(hand.palm) - place(of(name, message).pose) for hand, name in zip(hands, ("ann", "ben"))])
+        self.assertGreater(len(carried), 10)
+        self.assertTrue(numpy.allclose(*carried[0], atol=1e-3), "in the frames of their operators the hands are the same")
+        self.assertTrue(numpy.allclose([ben for _, ben in carried], carried[0][1], atol=1e-3), "Ben's goes where he drifts")
+        drifted = place(of("ben", states[-1]).pose) - place(of("ann", states[0]).pose)
+        self.assertGreater(drifted[0], 0.1)
+        self.assertAlmostEqual(drifted[1], 1.0, delta=1e-6)
 
     def test_https_makes_its_certificate_at_the_first_start(self):
         home = os.path.join(self.folder, "ros")

@@ -226,6 +226,12 @@ INSTANTIATE_TEST_SUITE_P(
         Object{"ring", collision(kMesh), "0 0 0", ring(0.05, 0.024)}),
     [](const auto& object) { return std::string(object.param.name); });
 
+TEST(GraspObjectOf, holds_the_object_of_an_operators_scene_behind_its_fixtures) {
+  const Scene scene = load_scene("config/scenes/handrails.urdf", {});
+  ASSERT_TRUE(scene.bodies.front().fixed);
+  EXPECT_NO_THROW(grasp_object(scene));
+}
+
 TEST(GraspObjectOf, needs_one_free_object_that_a_hand_closes_on) {
   const test::Folder folder;
   const auto refusal = [](const Scene& scene) -> std::string {

@@ -24,6 +24,9 @@ if MISSING:
 
 HOLD = 1.5  # [s] for which two hands pinch: they take the scene after 1 s
 CUBE = (0.902, 0.624, 0.0)
+# How far a headset's view of the scene has moved from where the scene was placed [m].
+APART = ('const a = page.placing.world, b = page.drawing.world.matrix;'
+         'return Math.hypot(a.elements[12] - b.elements[12], a.elements[14] - b.elements[14])')
 
 
 def point(x=0.0, y=0.0, z=0.0, w=1.0):
@@ -62,14 +65,22 @@ class PageTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
-        self.door = RunningDoor(self.folder, three=THREE)
+        self.open_door()
+        self.headset = self.open_page()
+
+    def open_door(self, **options):
+        self.door = RunningDoor(self.folder, three=THREE, **options)
         self.door.__enter__()
         self.addCleanup(self.door.__exit__)
-        self.headset = emulated_headset.Headset()
-        self.addCleanup(self.headset.close)
         self.show(scene(1))
-        self.headset.open(self.door.page)
-        self.wait(lambda: self.headset.run('return page.drawing.bodies.size'), 'the scene')
+
+    def open_page(self):
+        headset = emulated_headset.Headset()
+        self.addCleanup(headset.close)
+        headset.open(self.door.page)
+        self.headset = headset
+        self.wait(lambda: headset.run('return page.drawing.bodies.size'), 'the scene')
+        return headset
 
     def show(self, shown, training=()):
         self.door.picture.take_scene(shown)
@@ -125,33 +136,47 @@ class PageTest(unittest.TestCase):
         self.wait(lambda: self.headset.run('return page.drawing.training.children.length') == 0, 'the end of a training')
         self.assertEqual(self.share(is_cube), 0.0)
 
-    def show_operator(self, x):
-        """With the frame of its hands at x, 0.4 m before its centre of mass, turned by a right angle about z."""
+    def show_with_operators(self, *names):
+        shown = scene(1)
+        shown.bodies.extend(types.SimpleNamespace(
+            name=name, fixed=False, pose=types.SimpleNamespace(position=point(), orientation=point()), visuals=[], shapes=[],
+            is_operator=True, link=point(0.0, 0.4, 0.0)) for name in names)
+        self.show(shown)
+
+    def move_operators(self, **places):
+        """Each with the frame of its hands at x, 0.4 m before its centre of mass, turned by a right angle about z."""
         half = math.sqrt(0.5)
-        pose = types.SimpleNamespace(position=point(x + 0.4), orientation=point(z=half, w=half))
-        self.door.picture.take_objects(types.SimpleNamespace(
-            objects=[types.SimpleNamespace(name='operator', held=False, pose=pose)]))
+        self.door.picture.take_objects(types.SimpleNamespace(objects=[
+            types.SimpleNamespace(name=name, held=False, pose=types.SimpleNamespace(
+                position=point(x + 0.4), orientation=point(z=half, w=half))) for name, x in places.items()]))
         self.door.changed()
 
     def test_the_view_goes_with_the_operator_and_shows_its_speed(self):
-        shown = scene(1)
-        shown.bodies.append(types.SimpleNamespace(
-            name='operator', fixed=False, pose=types.SimpleNamespace(position=point(), orientation=point()), visuals=[], shapes=[],
-            is_operator=True, link=point(0.0, 0.4, 0.0)))
-        self.show(shown)
-        self.show_operator(0.3)
+        self.show_with_operators('operator')
+        self.move_operators(operator=0.3)
         self.wait(lambda: self.headset.run('return !document.getElementById("ride").hidden'), 'the button')
         self.assertAlmostEqual(self.headset.run('return page.drawing.world.matrix.elements[12]'), 0.0)
         self.press('ride')
         # World's origin is 0.3 m behind the frame's, whose x is world's y: 0.3 m along y, which the page has upright as -z.
         self.wait(lambda: abs(self.headset.run('return page.drawing.world.matrix.elements[14]') + 0.3) < 1e-3, 'the ride')
-        self.show_operator(0.4)
+        self.move_operators(operator=0.4)
         self.wait(lambda: self.headset.run('return document.getElementById("motion").textContent').endswith('/s'), 'the read-out')
         self.enter('immersive-vr')
         self.press('vignette')
-        apart = ('const a = page.placing.world, b = page.drawing.world.matrix;'
-                 'return Math.hypot(a.elements[12] - b.elements[12], a.elements[14] - b.elements[14])')
-        self.wait(lambda: abs(self.headset.run(apart) - 0.4) < 1e-3, 'the headset to go along')
+        self.wait(lambda: abs(self.headset.run(APART) - 0.4) < 1e-3, 'the headset to go along')
+
+    def test_two_headsets_go_with_an_operator_each(self):
+        self.open_door(people=2)
+        self.show_with_operators('ann', 'ben')
+        self.move_operators(ann=0.3, ben=0.5)
+        pages = []
+        for person in (0, 1):
+            pages.append(self.open_page())
+            pages[-1].enter('immersive-vr')
+            self.wait(lambda p=person: any(taken[1] == p for taken in self.door.port.taken), 'hands of person %d' % (person + 1))
+        for page, x in zip(pages, (0.3, 0.5)):
+            self.wait(lambda p=page, at=x: abs(p.run(APART) - at) < 1e-3, 'the headset to go along')
+        self.assertEqual(pages[0].errors(), [])
 
     def mounts(self):
         return [pose for transforms in self.door.port.mounted for _, pose in transforms[-1:]]

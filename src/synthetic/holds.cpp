@@ -1,0 +1,94 @@
+#include "holds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <variant>
+
+namespace mrhi {
+namespace {
+
+constexpr double kMaxRailRadius = 0.03, kMinRailLength = 0.3;  // of a cylinder that is held as a rail [m]
+constexpr double kMaxBar = 0.03, kMinBar = 0.1;  // width and length of a bar by which an object is held [m]
+
+/// Bars along the body's z by which two hands hold it, from left to right.
+std::vector<Vector3> bars_of(const Body& body) {
+  std::vector<Vector3> bars;
+  for (const PlacedShape& shape : body.shapes) {
+    const auto* box = std::get_if<Box>(&shape.shape);
+    if (box == nullptr || shape.pose.orientation.angularDistance(Quaternion::Identity()) > 1e-6) continue;
+    const Vector3 size = 2.0 * box->half_extents;
+    if (size.x() <= kMaxBar && size.y() <= kMaxBar && size.z() >= kMinBar)
+      bars.push_back(shape.pose.position);
+  }
+  std::sort(bars.begin(), bars.end(), [](const Vector3& a, const Vector3& b) { return a.x() < b.x(); });
+  return bars;
+}
+
+/// Grasp of an object that is to fly in a direction: of those that are equal by its symmetry, the one that
+/// closes and leaves across that direction with the least rotation.
+Grasp grasp_to_throw(const Body& object, const Vector3& direction) {
+  const Grasp usual = grasp_of(object);
+  const auto cost = [&](const Quaternion& turn) {
+    return std::abs(direction.dot(turn * usual.contacts.front().normal)) +
+           std::abs(direction.dot(turn * usual.retreat)) + 0.1 * turn.angularDistance(Quaternion::Identity());
+  };
+  const std::vector<Quaternion> turns = box_symmetries(object);
+  return usual.turned(*std::min_element(turns.begin(), turns.end(),
+                                        [&](const auto& a, const auto& b) { return cost(a) < cost(b); }));
+}
+
+Hold hold_of(const Grasp& grasp) {
+  const GraspPostures postures(grasp);
+  return {grasp.wrist, postures.open, postures.near, postures.pressing, grasp.retreat};
+}
+
+}  // namespace
+
+double Rail::distance(const Vector3& from) const {
+  const Vector3 off = from - centre;
+  return (off - std::clamp(axis.dot(off), -half_length, half_length) * axis).norm();
+}
+
+Hold Rail::hold(Side side, const Vector3& at, const Quaternion& person) const {
+  const double sign = side == Side::left ? -1.0 : 1.0;
+  const PowerGrip grip(radius);
+  Vector3 dorsal = person * -Vector3::UnitY();
+  dorsal = (dorsal - axis.dot(dorsal) * axis).normalized();
+  const Vector3 inward = person * Vector3(-sign, 0.0, 1.0);
+  const Vector3 thumb = std::copysign(1.0, axis.dot(inward)) * axis;
+  Pose wrist = hand_pose(Vector3::Zero(), (sign * thumb).cross(dorsal), dorsal);
+  const double along = std::clamp(axis.dot(at - centre), -half_length, half_length);
+  const Vector3 mirror(1.0, sign, 1.0);
+  wrist.position = centre + along * axis - wrist.orientation * Vector3(mirror.cwiseProduct(grip.bar));
+  return {wrist, grip.open, grip.near, grip.closed, dorsal};
+}
+
+std::vector<Rail> rails_of(const Scene& scene) {
+  std::vector<Rail> rails;
+  for (const Body& body : scene.bodies) {
+    if (!body.fixed || body.shapes.size() != 1) continue;
+    const auto* bar = std::get_if<Cylinder>(&body.shapes[0].shape);
+    if (bar == nullptr || bar->radius > kMaxRailRadius || 2.0 * bar->half_length < kMinRailLength) continue;
+    const Pose pose = body.start * body.shapes[0].pose;
+    rails.push_back({pose.position, pose.orientation * Vector3::UnitZ(), bar->half_length, bar->radius});
+  }
+  if (rails.empty())
+    throw std::invalid_argument(
+        "a simulated operator who floats needs a hold: the task's scene has no rail; " +
+        std::string("allowed: a scene with a fixture that is one cylinder, at most 6 ") +
+        "cm thick and at least 30 cm long");
+  return rails;
+}
+
+std::vector<std::pair<Side, Hold>> holds_of(const Body& object, const Vector3& place) {
+  const std::vector<Vector3> bars = bars_of(object);
+  if (bars.size() != 2)
+    return {{Side::right, hold_of(grasp_to_throw(object, (place - object.start.position).normalized()))}};
+  Hold right = hold_of(shipped_grasp("long_cuboid")), left = right;
+  left.wrist = mirrored(right.wrist), left.retreat.x() *= -1.0;
+  left.wrist.position += bars[0], right.wrist.position += bars[1];
+  return {{Side::left, left}, {Side::right, right}};
+}
+
+}  // namespace mrhi
