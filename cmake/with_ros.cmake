@@ -34,7 +34,7 @@ foreach(script ${scripts})
   install(PROGRAMS scripts/${script} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   file(REMOVE ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${script})  # of an earlier build
 endforeach()
-# What draws rviz on a virtual screen; `setup` is no program.
+# Programs that draw rviz on a virtual screen; `setup` is sourced by them.
 install(PROGRAMS scripts/film scripts/screenshot DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(FILES scripts/setup scripts/virtual_screen DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(PROGRAMS scripts/explain_pictures.py scripts/film.py scripts/rviz_stage.py scripts/screenshot.py scripts/watch_demo.py

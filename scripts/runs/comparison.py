@@ -10,7 +10,7 @@ from study import program
 
 from .tables import LARGEST, read_table
 
-# What both runs must have alike; columns that came later are not compared.
+# The compared columns; columns that came later are not compared.
 MOTION = ('time', 'name', 'px', 'py', 'pz', 'qx', 'qy', 'qz', 'qw', 'vx', 'vy', 'vz', 'wx', 'wy', 'wz')
 TOLERANCE = (1e-9, 1e-9)  # m between centres of mass, rad between orientations
 

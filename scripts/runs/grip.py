@@ -13,11 +13,11 @@ PATCH_TORQUE = 2.0 / 3.0  # lever of a round patch under even pressure, over its
 NO_LOAD = 1e9  # times the load, where there is none
 SCALE = 0.03  # m; length that weighs rotation against translation
 ITERATIONS = 150  # few gains after some dozens
-SHARPER, SHARPEST = 0.9, 1e-6  # regularisation of what hardly moves: factor per iteration, least
+SHARPER, SHARPEST = 0.9, 1e-6  # regularisation of directions that hardly move: factor per iteration, minimum
 MIN_LOAD = 1e-9  # N
 MIN_SPAN = 1e-3  # m, between thumb and fingers, for a line through the grip
 
-# What a finger, or the palm, does to an object in a frame. Forces in N, depth in m; outward: unit, object to finger.
+# Contact of a finger or the palm with an object in a frame. Forces in N, depth in m; outward: unit vector, object to finger.
 FingerContact = collections.namedtuple('FingerContact', 'hand_id finger normal tangential limit depth slips outward face')
 
 
