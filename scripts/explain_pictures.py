@@ -34,9 +34,8 @@ WHAT = {"grasp": "the grasp begins", "before_loss": "before it goes", "loss": "t
 
 def write_config(file):
     import yaml
-    from rviz_stage import view_file
-    with open(view_file("interaction"), encoding="utf-8") as source:
-        config = yaml.safe_load(source)
+    from rviz_stage import picture_view
+    config = picture_view("interaction", 2 * WIDTH, 2 * HEIGHT)
     manager = config["Visualization Manager"]
     # Markers, as what is seen is moved before the camera.
     manager["Displays"] = [{"Class": "rviz/MarkerArray", "Enabled": True, "Value": True, "Marker Topic": "/markers",
@@ -44,7 +43,6 @@ def write_config(file):
                             "Namespaces": {name: name in LAYERS for name in LAYERS + HIDDEN}}]
     eye = manager["Views"]["Current"]
     eye.update({"Yaw": 0.0, "Pitch": PITCH, "Distance": DISTANCE, "Focal Point": {"X": 0, "Y": 0, "Z": 0}})
-    config["Window Geometry"].update({"Width": 2 * WIDTH, "Height": 2 * HEIGHT})
     yaml.safe_dump(config, file)
     file.flush()
     return eye

@@ -11,6 +11,7 @@ import subprocess
 import time
 
 import rospy
+import yaml
 from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
 from mr_hand_interaction.msg import ContactArray, HandFrame, ObjectStateArray, SceneDescription
@@ -36,10 +37,14 @@ def missing_tools():
     return sorted({package for program, package in PROGRAMS.items() if not shutil.which(program)})
 
 
-def view_file(name):
+def picture_view(name, width, height):
+    """A configuration of rviz/ for a window of this size without panels."""
     for folder in (os.path.join(HERE, "..", "rviz"), os.path.join(HERE, "..", "..", "share", "mr_hand_interaction", "rviz")):
         if os.path.exists(os.path.join(folder, name + ".rviz")):
-            return os.path.join(folder, name + ".rviz")
+            with open(os.path.join(folder, name + ".rviz"), encoding="utf-8") as source:
+                config = yaml.safe_load(source)
+            config["Window Geometry"].update({"Width": width, "Height": height, "Hide Left Dock": True, "Hide Right Dock": True})
+            return config
     raise RuntimeError("rviz/" + name + ".rviz is not found; allowed: a built or installed package")
 
 

@@ -102,9 +102,8 @@ def middle(demo):
 
 
 def write_config(options, focus, file):
-    from rviz_stage import view_file  # which imports this
-    with open(view_file("interaction"), encoding="utf-8") as source:
-        config = yaml.safe_load(source)
+    from rviz_stage import picture_view  # which imports this
+    config = picture_view("interaction", *(2 * int(number) for number in options.size.split("x")))
     manager = config["Visualization Manager"]
     manager["Views"]["Current"].update({"Yaw": options.view[0], "Pitch": options.view[1], "Distance": options.distance,
                                         "Focal Point": focus})
@@ -114,8 +113,6 @@ def write_config(options, focus, file):
         if display["Name"] == "Hands and objects":
             display.update({name.capitalize(): name not in options.hide for name in LAYERS if name != "Grid"})
             display.update({name.capitalize(): name in options.show for name in OFF_AT_FIRST})
-    width, height = (2 * int(number) for number in options.size.split("x"))
-    config["Window Geometry"].update({"Width": width, "Height": height})
     yaml.safe_dump(config, file)
     file.flush()
 
