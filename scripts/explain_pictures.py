@@ -37,7 +37,7 @@ def write_config(file):
     from rviz_stage import picture_view
     config = picture_view("interaction", 2 * WIDTH, 2 * HEIGHT)
     manager = config["Visualization Manager"]
-    # Markers, as what is seen is moved before the camera.
+    # Markers, because the scene is moved in front of the camera.
     manager["Displays"] = [{"Class": "rviz/MarkerArray", "Enabled": True, "Value": True, "Marker Topic": "/markers",
                             "Name": "Hands and objects", "Queue Size": 10,
                             "Namespaces": {name: name in LAYERS for name in LAYERS + HIDDEN}}]
@@ -49,7 +49,7 @@ def write_config(file):
 
 
 def from_yaw(yaw):
-    """Where a camera of that yaw is, seen from what it looks at."""
+    """Direction from the focus to a camera with that yaw."""
     return math.cos(yaw) * math.cos(PITCH), math.sin(yaw) * math.cos(PITCH), math.sin(PITCH)
 
 
@@ -75,7 +75,7 @@ def focus_of(moment):
 
 
 def placed(marker, moment, yaw):
-    """Where rviz's camera, which does not move, sees it as one of that yaw before the focus would."""
+    """Moves a pose so that rviz's fixed camera sees it as a camera with that yaw would."""
     focus, distance = focus_of(moment)
     c, s = math.cos(-yaw), math.sin(-yaw)
     pose = marker.pose

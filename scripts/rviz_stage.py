@@ -1,4 +1,4 @@
-"""Has rviz draw poses and markers picture by picture: each picture bears a mark, so that it is known when it has been drawn."""
+"""Lets rviz draw poses and markers picture by picture. A mark in each picture shows when it has been drawn."""
 import collections
 import contextlib
 import filecmp
@@ -108,7 +108,7 @@ def own_stage(name, width, height):
 
 
 class Stage:
-    """What rviz shows of some topics, as of a time."""
+    """Messages of some topics that rviz shows at a time."""
 
     def __init__(self, topics):
         self.publishers = {topic: rospy.Publisher(topic, POSES.get(topic, MarkerArray), queue_size=100, latch=topic == "scene")
@@ -159,7 +159,7 @@ class Stage:
                 self.publishers[topic].publish(MarkerArray(list(markers.values())))
 
     def show_again(self):
-        """rviz takes hands away that nobody speaks of."""
+        """Sends hands again, because rviz removes hands without messages."""
         for topic in POSES:
             if topic in self.poses and topic != "scene":
                 self.publishers[topic].publish(self.poses[topic])

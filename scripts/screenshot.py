@@ -118,7 +118,7 @@ def write_config(options, focus, file):
 
 
 def covers_screen(file):
-    """Whether rviz's window is there: its start-up picture stands on a black screen."""
+    """True once rviz's window is open. Its splash screen is on a black background."""
     corner = subprocess.run(["convert", file, "-crop", "1x1+2+2", "-depth", "8", "rgb:-"], stdout=subprocess.PIPE, check=True)
     return any(corner.stdout)
 
@@ -177,7 +177,7 @@ def stop_at_moment(demo, options, deadline):
 
 
 def text_shown(deadline):
-    """What the scene's text says. It hangs below the scene, where a picture from near by has no room for it."""
+    """Returns the scene's text, which is below the scene and outside of close pictures."""
     told = []
 
     def take(array):

@@ -1,4 +1,4 @@
-"""What hands do to an object in each frame: finger by finger, and all contacts of a frame together."""
+"""Forces of hands on an object in each frame: for each finger, and for all contacts together."""
 
 import collections
 
@@ -22,7 +22,7 @@ FingerContact = collections.namedtuple('FingerContact', 'hand_id finger normal t
 
 
 def utilisation(touch):
-    """Of the friction limit."""
+    """Friction utilisation: tangential force over the friction limit."""
     return touch.tangential / touch.limit if touch.limit > 0.0 else 0.0
 
 
@@ -83,7 +83,7 @@ def torques(contacts, rows, count):
 
 
 def margins(contacts, rows, position):
-    """What friction could bear beyond its load, of a straight pull [N]; and how often it could bear load and torque."""
+    """Friction margin for a straight pull [N]; and the largest factor on load and torque that friction can carry."""
     count = len(position)
     normal = vectors(contacts, ('nx', 'ny', 'nz'))
     along = vectors(contacts, ('fx', 'fy', 'fz')) + contacts['normal_force'].to_numpy()[:, None] * normal

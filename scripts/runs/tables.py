@@ -152,7 +152,7 @@ class Run:
 
     @property
     def phalanges(self):
-        """Of the tracked hands."""
+        """Phalanges of the tracked hands."""
         if self._phalanges is None:
             hands = read_table(self.folder, 'hands.csv')
             self._check_frames('hands.csv', hands)
