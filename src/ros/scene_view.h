@@ -90,6 +90,7 @@ class SceneView {
     result_ = FrameResult();
   }
   void take(const mr_hand_interaction::ObjectStateArray& objects) {
+    result_.assists.clear();
     for (const auto& object : objects.objects) {
       const auto index = find_body(scene_, object.name);
       if (!index) continue;
@@ -99,6 +100,8 @@ class SceneView {
       state_.bodies[i].linear_momentum = from_message(object.twist.linear);
       state_.bodies[i].angular_momentum = from_message(object.twist.angular);
       state_.interactions[i].level = object.held ? InteractionLevel::grasp : InteractionLevel::none;
+      if (object.assisted)
+        result_.assists.push_back({0, static_cast<std::uint16_t>(i), from_message(object.assist_force)});
     }
   }
   void take(const mr_hand_interaction::ContactArray& contacts) {
@@ -141,7 +144,7 @@ class SceneView {
   const Scene& scene() const { return scene_; }
   /// Poses of bodies, held bodies, and ids of hands.
   const SimulationState& state() const { return state_; }
-  /// Rendered hands with their loads, the corresponding tracked hands, and contacts.
+  /// Rendered hands with their loads, the corresponding tracked hands, contacts, and grasp assist by object.
   const FrameResult& result() {
     result_.tracked.clear();
     for (std::size_t i = 0; i < result_.rendered.size(); ++i) {
