@@ -19,6 +19,7 @@ set(nodes hand_interaction_node hand_tracking_node interaction_node synthetic_ha
 foreach(node ${nodes})
   add_executable(${node} src/nodes/${node}.cpp)
   target_link_libraries(${node} ${PROJECT_NAME}_ros)
+  precompiled_as(${node} ${PROJECT_NAME}_ros)
 endforeach()
 
 install(TARGETS ${PROJECT_NAME}_core ${PROJECT_NAME}_ros
