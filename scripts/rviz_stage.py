@@ -43,6 +43,7 @@ def picture_view(name, width, height):
         if os.path.exists(os.path.join(folder, name + ".rviz")):
             with open(os.path.join(folder, name + ".rviz"), encoding="utf-8") as source:
                 config = yaml.safe_load(source)
+            config["Panels"] = []
             config["Window Geometry"].update({"Width": width, "Height": height, "Hide Left Dock": True, "Hide Right Dock": True})
             return config
     raise RuntimeError("rviz/" + name + ".rviz is not found; allowed: a built or installed package")
