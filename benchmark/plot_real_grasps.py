@@ -57,9 +57,9 @@ def closings_of(rows, name):
 
 
 def windows_of(rows):
-    chosen = [r for r in rows if r['windows'] == 'arctic' and r['lead'] == '1']
-    return points(chosen, lambda r: float(r['within_50mm']), lambda r: float(r['within_50mm']),
-                  lambda r: float(r['within_50mm']))
+    chosen = [r for r in rows if r['split'] == 'all' and r['lead'] == '1']
+    return points(chosen, lambda r: float(r['within_50mm']), lambda r: float(r['within_50mm_low']),
+                  lambda r: float(r['within_50mm_high']))
 
 
 def draw(axes, families, title):

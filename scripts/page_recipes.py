@@ -326,8 +326,95 @@ def engines_figures(runs, folder):
             'results': table(*race_tables.results(rows)), 'crowds': table(*race_tables.crowds(rows, times))}, versions
 
 
+HANDS = collections.OrderedDict([  # settings of real_grasps, from the defaults to the paper's hand
+    ('defaults', {}), ('assist alone', {'hand/strength': 'unlimited', 'hand/palm_strength': 'unlimited', 'hand/pad': '0'}),
+    ("a person's hand alone", {'contact/grasp_assist': 'false'})])
+HANDS["neither: the paper's hand"] = dict(HANDS['assist alone'], **HANDS["a person's hand alone"])
+
+
+def captures():
+    """Windows of captures, in the folders that CAPTURE_WINDOWS names, as scripts/import_captures writes them; the first in all settings."""
+    folders = os.environ.get('CAPTURE_WINDOWS', '').split()
+    if not folders:
+        raise MeasurementError('CAPTURE_WINDOWS is empty; allowed: folders that scripts/import_captures wrote')
+    scratch, results = tempfile.mkdtemp(), []
+    try:
+        for index, folder in enumerate(folders):
+            results.append([folder, collections.OrderedDict()])
+            for number, (label, chosen) in enumerate(HANDS.items() if index == 0 else [('defaults', {})]):
+                output = os.path.join(scratch, '%d_%d' % (index, number))
+                os.makedirs(output)
+                told = run('real_grasps', '--arctic', folder, '--lead', '1', '--list', '--output', output, *[
+                    word for key, value in chosen.items() for word in ('--set', '%s=%s' % (key, value))])
+                results[-1][1][label] = (output, told)
+        return captures_figures(results), {}
+    finally:
+        shutil.rmtree(scratch)
+
+
+CHOSEN_ON = r's1_(ketchup|laptop|notebook|waffleiron)_use_01_|s2_notebook_use_02_'  # what the defaults were chosen on
+SETS = {'artigrasp': 'ARCTIC', 'dexmachina': 'ARCTIC', 'manipnet': 'ManipNet'}
+
+
+def captures_figures(results):
+    """Of [windows, {setting: (output of real_grasps, what it said)}] of each set."""
+    sets = []
+    for folder, settings in results:
+        windows = rows_of_file(folder, 'windows.csv')
+        output, told = settings['defaults']
+        of = {split: row for (lead, split), row in _splits(output).items() if lead == '1'}
+        rigid = _splits(output)['', 'all']
+        people, things = ({row[key] for row in windows} for key in ('person', 'object'))
+        hinge = re.search(r'windows lead 1 .*hinge within 10 degrees 50 mm (\d+) %', told)
+        sets.append([SETS.get(windows[0]['set'], os.path.basename(folder.rstrip(os.sep))) + (', with hinges' if hinge else ''),
+                     '%d (%s)' % (len(windows), of['all']['captures']), '%d, %d' % (len(people), len(things)),
+                     _share(of['all'], 50) + ('; hinge within 10° too: %s %%' % hinge.group(1) if hinge else ''),
+                     _share(of['all'], 20), _newtons(of['all']),
+                     _share(rigid, 20),
+                     '%s (%s to %s)' % re.search(r'rigid hand.*?([-+]\d+) points \(([-+]\d+) to ([-+]\d+)\)', told).groups()])
+    first = results[0][1]
+    shares = [(label, _splits(output)['1', 'all']) for label, (output, _) in first.items() if label != 'defaults']
+    rigid = [('`rigid`', _splits(first['defaults'][0])['', 'all'])]
+    splits = {split: row for (lead, split), row in _splits(first['defaults'][0]).items() if lead == '1'}
+    return dict({'sets': table(['set', 'windows (captures)', 'people, objects', 'within 50 mm', 'within 20 mm', 'p90', '`rigid`: 20 mm',
+                                'difference, points'], sets),
+                 'chosen': _chosen(first['defaults'][1]),
+                 'settings': '; '.join('%s %.0f %% and %.0f %%%s' % (
+                     label, 100 * float(row['within_50mm']), 100 * float(row['within_20mm']),
+                     '' if label == '`rigid`' else ', ' + _newtons(row)) for label, row in shares + rigid)},
+                **{kind: ', '.join('%s %.0f %%' % (split.split(' ', 1)[1], 100 * float(row['within_50mm']))
+                                   for split, row in sorted(splits.items(), key=lambda item: -float(item[1]['within_50mm']))
+                                   if split.startswith(kind)) for kind in ('person', 'object')})
+
+
+def _chosen(told):
+    """Of windows that --list named: those that the defaults were chosen on, and the others."""
+    windows = [(bool(re.match(CHOSEN_ON, name)), int(frames), (int(loose), int(tight))) for name, frames, loose, tight in re.findall(
+        r'^(\w+) +(\d+) frames of.*within 50 mm +(\d+) %.*within 20 mm +(\d+) %', told, re.MULTILINE) if re.search(r'_\d+$', name)]
+    parts = []
+    for chosen, label in ((True, 'the %d that the defaults were chosen on'), (False, 'the other %d')):
+        some = [(frames, shares) for one, frames, shares in windows if one == chosen]
+        total = max(1, sum(frames for frames, _ in some))
+        parts.append('%.0f %% and %.0f %% in %s' % (*(sum(frames * shares[i] for frames, shares in some) / total for i in (0, 1)),
+                                                label % len(some)))
+    return ', '.join(parts)
+
+
+def _splits(folder):
+    return {(row['lead'], row['split']): row for row in rows_of_file(folder, 'real_grasps_arctic.csv')}
+
+
+def _share(row, millimetres):
+    return '%.0f %% (%.0f to %.0f)' % tuple(100 * float(row['within_%dmm%s' % (millimetres, end)]) for end in ('', '_low', '_high'))
+
+
+def _newtons(row):
+    return '%.0f N' % float(row['force_p90_N'])
+
+
 RECIPES = {
     'afloat': Recipe('2 minutes', CORE + ['src/synthetic', 'src/training', 'config/scenes', 'config/tasks'], afloat),
+    'captures': Recipe('5 minutes', CORE + ['benchmark/real_grasps', 'scripts/captures'], captures),
     'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'modelling'], contact),
     'engines': Recipe('25 minutes', LAWS + ['benchmark/speed_accuracy'], engines),
     'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <sstream>
 
 #include "contact_history.h"
 #include "joints/joint_law.h"
@@ -158,15 +159,41 @@ std::vector<double> away_with(const Window& window, Side side) {
   return away;
 }
 
+void add_frames(const WindowOutcome& outcome, double limit, double angle, Share& sum) {
+  sum.trials += outcome.away.size();
+  for (std::size_t i = 0; i < outcome.away.size(); ++i)
+    sum.successes += outcome.away[i] < limit && (outcome.turned.empty() || outcome.turned[i] < angle);
+}
+
+std::map<std::string, Share> by_capture(const std::vector<WindowOutcome>& outcomes, double limit) {
+  std::map<std::string, Share> shares;
+  for (const WindowOutcome& outcome : outcomes)
+    add_frames(outcome, limit, std::numeric_limits<double>::infinity(), shares[outcome.labels.capture]);
+  return shares;
+}
+
+/// The cells after the name of a row of windows.csv that are words: set, person and object, where they are
+/// there.
+WindowLabels labels_of(const std::string& name, const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) {
+    if (!cell.empty() && cell.back() == '\r') cell.pop_back();
+    cells.push_back(cell);
+  }
+  cells.resize(6);
+  return {name.substr(0, name.rfind('_')), cells[4], cells[5]};
+}
+
 }  // namespace
 
 std::vector<Window> load_windows(const std::string& folder, const Configuration& configuration) {
   std::vector<Window> windows;
-  read_rows(folder + "/windows.csv", [&](const CsvColumns& row, const std::string& line) {
+  read_rows(folder + "/windows.csv", [&](const CsvColumns&, const std::string& line) {
     const std::string name = line.substr(0, line.find(','));
     windows.push_back(load_window(folder + "/" + name, configuration));
     windows.back().name = name;
-    windows.back().first = row.required("first") != 0.0;
+    windows.back().labels = labels_of(name, line);
   });
   return windows;
 }
@@ -193,6 +220,7 @@ WindowOutcome play(const Window& window, const Configuration& configuration, std
   const auto look = [](std::size_t, const FrameResult&) {};
   put(window, window.free_from, led(window, configuration, from, look), simulation);
   WindowOutcome outcome;
+  outcome.labels = window.labels;
   for (std::size_t i = window.free_from + 1; i < window.frames.size(); ++i) {
     if (advance(window, i, simulation)) add_finger_forces(simulation.result(), outcome.forces);
     const SimulationState& state = simulation.state();
@@ -205,19 +233,40 @@ WindowOutcome play(const Window& window, const Configuration& configuration, std
 }
 
 WindowOutcome play_rigidly(const Window& window) {
-  WindowOutcome right{away_with(window, Side::right), {}, {}}, left{away_with(window, Side::left), {}, {}};
+  WindowOutcome right{away_with(window, Side::right), {}, {}, window.labels},
+      left{away_with(window, Side::left), {}, {}, window.labels};
   constexpr double kNear = 0.02;  // the tightest reported limit [m]
   return share_within({right}, kNear) < share_within({left}, kNear) ? left : right;
 }
 
 double share_within(const std::vector<WindowOutcome>& outcomes, double limit, double angle) {
-  std::size_t frames = 0, within = 0;
-  for (const WindowOutcome& outcome : outcomes) {
-    frames += outcome.away.size();
-    for (std::size_t i = 0; i < outcome.away.size(); ++i)
-      within += outcome.away[i] < limit && (outcome.turned.empty() || outcome.turned[i] < angle);
+  Share sum;
+  for (const WindowOutcome& outcome : outcomes) add_frames(outcome, limit, angle, sum);
+  return sum.trials > 0 ? static_cast<double>(sum.successes) / static_cast<double>(sum.trials) : 0.0;
+}
+
+Interval share_interval(const std::vector<WindowOutcome>& outcomes, double limit) {
+  std::vector<Share> shares;
+  for (const auto& [capture, share] : by_capture(outcomes, limit)) shares.push_back(share);
+  return bootstrapped(shares);
+}
+
+Interval difference_interval(const std::vector<WindowOutcome>& outcomes,
+                             const std::vector<WindowOutcome>& baseline, double limit) {
+  std::vector<Share> shares, of_baseline;
+  const auto others = by_capture(baseline, limit);
+  for (const auto& [capture, share] : by_capture(outcomes, limit)) {
+    shares.push_back(share);
+    of_baseline.push_back(others.at(capture));
   }
-  return frames > 0 ? static_cast<double>(within) / static_cast<double>(frames) : 0.0;
+  return bootstrapped(shares, of_baseline);
+}
+
+std::map<std::string, std::vector<WindowOutcome>> by_label(const std::vector<WindowOutcome>& outcomes,
+                                                           std::string WindowLabels::*label) {
+  std::map<std::string, std::vector<WindowOutcome>> groups;
+  for (const WindowOutcome& outcome : outcomes) groups[outcome.labels.*label].push_back(outcome);
+  return groups;
 }
 
 std::size_t stayed(const std::vector<WindowOutcome>& outcomes, double limit) {

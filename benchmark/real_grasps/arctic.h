@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,13 +9,19 @@
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/tracking/joints.h"
+#include "statistics.h"
 
 namespace mrhi::real_grasps {
 
-/// Captured hands and object, as cut by arctic_windows.py.
+/// Of a window: the recording that it was cut from, whose hands, and what they hold.
+struct WindowLabels {
+  std::string capture, person, object;
+};
+
+/// Captured hands and object, as cut by import_captures.
 struct Window {
   std::string name;
-  bool first = false;               ///< of its capture
+  WindowLabels labels;
   Scene scene;                      ///< the object alone, at 1 g: a body, or two on a hinge
   std::vector<JointsFrame> frames;  ///< as seen by a device at the default mount
   std::vector<Pose> places;         ///< of the object's body, or of the parent of two, in each frame
@@ -30,6 +37,7 @@ struct WindowOutcome {
   std::vector<double> away;    ///< distance from its captured position, in each frame [m]
   std::vector<double> turned;  ///< error of its hinge, likewise [rad]
   std::vector<double> forces;  ///< of each loaded finger, in each frame [N]
+  WindowLabels labels;
 };
 
 /// Last frame before the release in which no hand touches the object; 0 if there is none.
@@ -47,6 +55,18 @@ WindowOutcome play_rigidly(const Window& window);
 /// Fraction of all frames with an error below `limit` [m], and below `angle` [rad] at the hinge, if any.
 double share_within(const std::vector<WindowOutcome>& outcomes, double limit,
                     double angle = std::numeric_limits<double>::infinity());
+
+/// Its interval at 95 % confidence: the bootstrap over captures.
+Interval share_interval(const std::vector<WindowOutcome>& outcomes, double limit);
+
+/// The same of the difference between two outcomes of each window: `outcomes` less `baseline`. There may be
+/// several of the first for each of the second.
+Interval difference_interval(const std::vector<WindowOutcome>& outcomes,
+                             const std::vector<WindowOutcome>& baseline, double limit);
+
+/// Outcomes by a label, in the order of its values.
+std::map<std::string, std::vector<WindowOutcome>> by_label(const std::vector<WindowOutcome>& outcomes,
+                                                           std::string WindowLabels::*label);
 
 /// Number of windows in which this holds for every frame.
 std::size_t stayed(const std::vector<WindowOutcome>& outcomes, double limit);

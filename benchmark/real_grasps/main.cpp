@@ -34,10 +34,11 @@ Puts bodies at rest (0 g) where recorded hands close and tells how many are held
   --engine FILE     a physics engine too: its module, .../speed_accuracy_NAME.so; repeatable
   --output DIR      writes real_grasps.csv, real_grasps_events.csv (a line for each closing) and, with --arctic,
                     real_grasps_arctic.csv
-  --arctic DIR      plays the windows that arctic_windows.py cut into DIR: captured hands on captured objects
+  --arctic DIR      plays the windows that import_captures cut into DIR: captured hands on captured objects;
+                    together, by person and by object, with intervals by capture
   --lead LEAD,...   for how long such an object is led before it is let free: seconds (0: hands appear on it), or
-                    clear: since no hand touched it; 0.3,1,3,10,clear if not said
-  --jobs N          recordings at the same time; 1 if not said
+                    clear: since no hand touched it; 0.3,1,clear if not said
+  --jobs N          recordings or windows at the same time; 1 if not said
 docs/real_grasps.md says what the figures mean.
 )";
 
@@ -48,12 +49,12 @@ struct Arguments {
   std::string output;  ///< folder, or empty
   unsigned jobs = 1;
   Disturbance disturbance;
-  unsigned seeds = 1;                ///< runs of each closing, with different noise
-  bool compare = false;              ///< our models in several settings
-  std::vector<std::string> engines;  ///< modules of physics engines
-  std::string arctic;                ///< folder of windows, or empty
-  std::vector<std::string> leads{"0.3", "1", "3", "10", "clear"};  ///< before windows: seconds, or clear
-  std::vector<std::string> paths;                                  ///< recordings, or folders with recordings
+  unsigned seeds = 1;                                   ///< runs of each closing, with different noise
+  bool compare = false;                                 ///< our models in several settings
+  std::vector<std::string> engines;                     ///< modules of physics engines
+  std::string arctic;                                   ///< folder of windows, or empty
+  std::vector<std::string> leads{"0.3", "1", "clear"};  ///< before windows: seconds, or clear
+  std::vector<std::string> paths;                       ///< recordings, or folders with recordings
 };
 
 std::vector<Row> rows_of(const Given& given) {
@@ -150,19 +151,25 @@ void play_recording(const Recording& recording, const Row& row, const Arguments&
   }
 }
 
+/// Calls `work` with each index below `count`, in `jobs` threads.
+template <typename Work>
+void for_each(std::size_t count, unsigned jobs, Work work) {
+  std::atomic<std::size_t> next{0};
+  const auto some = [&] {
+    for (std::size_t i; (i = next++) < count;) work(i);
+  };
+  std::vector<std::thread> threads;
+  for (unsigned i = 1; i < jobs; ++i) threads.emplace_back(some);
+  some();
+  for (std::thread& thread : threads) thread.join();
+}
+
 /// Plays recordings concurrently; returns events in the recordings' order.
 std::vector<Event> play_row(const std::vector<Recording>& recordings, const Row& row,
                             const Arguments& arguments, unsigned jobs, const Player& player) {
   std::vector<std::vector<Event>> found(recordings.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i; (i = next++) < recordings.size();)
-      play_recording(recordings[i], row, arguments, player, found[i]);
-  };
-  std::vector<std::thread> threads;
-  for (unsigned i = 1; i < jobs; ++i) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
+  for_each(recordings.size(), jobs,
+           [&](std::size_t i) { play_recording(recordings[i], row, arguments, player, found[i]); });
   std::vector<Event> events;
   for (auto& of_one : found) events.insert(events.end(), of_one.begin(), of_one.end());
   return events;
@@ -189,56 +196,67 @@ void play_closings(const std::vector<Recording>& recordings, const Arguments& ar
   }
 }
 
-/// Outcomes of the first window of each capture, and of all.
-struct Groups {
-  std::vector<WindowOutcome> first, all;
-
-  void add(const Window& window, const WindowOutcome& outcome) {
-    all.push_back(outcome);
-    if (window.first) first.push_back(outcome);
-  }
-  void report(const std::string& name, const std::string& lead, std::ostream& csv,
-              const Contender& contender) const {
-    for (const auto& [group, outcomes] : {std::make_pair("_first", &first), std::make_pair("", &all)}) {
-      if (outcomes->empty()) continue;
-      std::cout << line(name + group + (lead.empty() ? "" : " lead " + lead), *outcomes) << std::endl;
-      write_arctic(csv, contender, name + group, lead, *outcomes);
+/// Reports windows together, and by person and by object where there are several.
+void report_windows(const std::string& name, const std::string& lead,
+                    const std::vector<WindowOutcome>& outcomes, const Contender& contender,
+                    std::ostream& csv) {
+  std::cout << line(name + (lead.empty() ? "" : " lead " + lead), outcomes) << std::endl;
+  write_arctic(csv, contender, "all", lead, outcomes);
+  for (const auto& [kind, label] :
+       {std::make_pair("person ", &WindowLabels::person), std::make_pair("object ", &WindowLabels::object)}) {
+    const auto groups = by_label(outcomes, label);
+    if (groups.size() < 2) continue;
+    for (const auto& [value, some] : groups) {
+      std::cout << line("  " + (kind + value), some) << std::endl;
+      write_arctic(csv, contender, kind + value, lead, some);
     }
   }
-};
+}
 
-void play_windows(const Arguments& arguments, const Contender& contender) {
+/// The outcomes of each window, one for each seed.
+std::vector<WindowOutcome> play_lead(const std::vector<Window>& windows, const Arguments& arguments,
+                                     const Configuration& configuration, const std::string& lead) {
+  std::vector<WindowOutcome> outcomes(windows.size() * arguments.seeds);
+  for_each(outcomes.size(), arguments.jobs, [&](std::size_t i) {
+    Window window = windows[i / arguments.seeds];
+    const auto seed = static_cast<unsigned>(i % arguments.seeds + 1);
+    window.frames =
+        disturbed(window.frames, 0, window.frames.size() - 1, {arguments.disturbance.noise, {}, seed});
+    outcomes[i] = play(window, configuration, seconds_of(lead));
+  });
+  return outcomes;
+}
+
+void play_windows(const Arguments& arguments, const Contender& contender,
+                  const std::vector<WindowOutcome>& rigid) {
   if (arguments.arctic.empty()) return;
   if (arguments.paths.empty()) std::cout << contender.engine << ", " << contender.setting << std::endl;
   std::ofstream csv = table(arguments, "real_grasps_arctic.csv");
   const std::vector<Window> windows = load_windows(arguments.arctic, contender.configuration);
   LeadSpread spread;
   for (const std::string& lead : arguments.leads) {
-    Groups groups;
-    for (Window window : windows) {
-      const std::vector<JointsFrame> clean = window.frames;
-      for (unsigned seed = 1; seed <= arguments.seeds; ++seed) {
-        window.frames = disturbed(clean, 0, clean.size() - 1, {arguments.disturbance.noise, {}, seed});
-        groups.add(window, play(window, contender.configuration, seconds_of(lead)));
-        if (arguments.list) std::cout << line(window.name, {groups.all.back()}) << '\n';
-      }
-    }
-    groups.report("arctic", lead, csv, contender);
-    spread.within_50mm.push_back(share_within(groups.all, 0.05));
-    spread.within_20mm.push_back(share_within(groups.all, 0.02));
+    const std::vector<WindowOutcome> outcomes = play_lead(windows, arguments, contender.configuration, lead);
+    if (arguments.list)
+      for (std::size_t i = 0; i < outcomes.size(); ++i)
+        std::cout << line(windows[i / arguments.seeds].name, {outcomes[i]}) << '\n';
+    report_windows("windows", lead, outcomes, contender, csv);
+    std::cout << line_against_rigid(outcomes, rigid) << std::endl;
+    spread.within_50mm.push_back(share_within(outcomes, 0.05));
+    spread.within_20mm.push_back(share_within(outcomes, 0.02));
   }
   std::cout << line(spread) << std::endl;
 }
 
 /// Rigid baseline without a contact model: the captured hands carry the object as one piece.
-void play_windows_rigidly(const Arguments& arguments) {
-  if (arguments.arctic.empty()) return;
+std::vector<WindowOutcome> play_windows_rigidly(const Arguments& arguments) {
+  std::vector<WindowOutcome> outcomes;
+  if (arguments.arctic.empty()) return outcomes;
   const Contender hand{"none", "rigid hand", arguments.configuration, {}};
   std::ofstream csv = table(arguments, "real_grasps_arctic.csv");
-  Groups groups;
   for (const Window& window : load_windows(arguments.arctic, arguments.configuration))
-    groups.add(window, play_rigidly(window));
-  groups.report("rigid", "", csv, hand);
+    outcomes.push_back(play_rigidly(window));
+  report_windows("rigid", "", outcomes, hand, csv);
+  return outcomes;
 }
 
 /// Only rows of free bodies, for other engines.
@@ -277,11 +295,11 @@ void run(const Arguments& arguments) {
   const std::vector<Contender> contenders = arguments.compare
                                                 ? our_settings(arguments.configuration)
                                                 : std::vector<Contender>{ours(arguments.configuration)};
+  const std::vector<WindowOutcome> rigid = play_windows_rigidly(arguments);
   for (const Contender& contender : contenders) {
     play_closings(recordings, arguments, arguments.jobs, contender);
-    play_windows(arguments, contender);
+    play_windows(arguments, contender, rigid);
   }
-  play_windows_rigidly(arguments);
   for (const std::string& module : arguments.engines) play_engine(recordings, arguments, module);
 }
 

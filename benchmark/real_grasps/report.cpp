@@ -141,6 +141,16 @@ std::string line(const std::string& name, const std::vector<Event>& events) {
   return text;
 }
 
+std::string line_against_rigid(const std::vector<WindowOutcome>& outcomes,
+                               const std::vector<WindowOutcome>& rigid) {
+  const Interval interval = difference_interval(outcomes, rigid, 0.02);
+  char text[200];
+  std::snprintf(text, sizeof text, "  against a rigid hand: within 20 mm %+.0f points (%+.0f to %+.0f)",
+                100.0 * (share_within(outcomes, 0.02) - share_within(rigid, 0.02)), 100.0 * interval.low,
+                100.0 * interval.high);
+  return text;
+}
+
 std::string line(const LeadSpread& spread) {
   const auto range = [](const std::vector<double>& shares) {
     const auto [low, high] = std::minmax_element(shares.begin(), shares.end());
@@ -158,13 +168,15 @@ std::string line(const LeadSpread& spread) {
 std::string line(const std::string& name, const std::vector<WindowOutcome>& outcomes) {
   std::size_t frames = 0;
   for (const WindowOutcome& outcome : outcomes) frames += outcome.away.size();
-  char text[200], hinge[100];
+  char text[300], hinge[100];
+  const Interval loose = share_interval(outcomes, 0.05), tight = share_interval(outcomes, 0.02);
   std::snprintf(text, sizeof text,
-                "%-26s %4zu frames; within 50 mm %3.0f %%, within 20 mm %3.0f %%; p90 force %5.1f N; to the "
-                "end %zu of %zu",
-                name.c_str(), frames, 100.0 * share_within(outcomes, 0.05),
-                100.0 * share_within(outcomes, 0.02), force_p90(outcomes), stayed(outcomes, 0.05),
-                outcomes.size());
+                "%-26s %5zu frames of %3zu captures; within 50 mm %3.0f %% (%.0f to %.0f), within 20 mm "
+                "%3.0f %% (%.0f to %.0f); p90 force %5.1f N; to the end %zu of %zu",
+                name.c_str(), frames, by_label(outcomes, &WindowLabels::capture).size(),
+                100.0 * share_within(outcomes, 0.05), 100.0 * loose.low, 100.0 * loose.high,
+                100.0 * share_within(outcomes, 0.02), 100.0 * tight.low, 100.0 * tight.high,
+                force_p90(outcomes), stayed(outcomes, 0.05), outcomes.size());
   if (outcomes.empty() || outcomes.front().turned.empty()) return text;
   std::snprintf(hinge, sizeof hinge, "; with its hinge within 10 degrees 50 mm %.0f %%, 20 mm %.0f %%",
                 100.0 * share_within(outcomes, 0.05, kHinge), 100.0 * share_within(outcomes, 0.02, kHinge));
@@ -208,17 +220,19 @@ void write_events(std::ostream& csv, const Contender& contender, const std::stri
 }
 
 void write_arctic_header(std::ostream& csv) {
-  csv << "engine,setting,windows,lead,count,stayed,stayed_low,stayed_high,within_50mm,within_20mm,force_p90_"
-         "N\n";
+  csv << "engine,setting,split,lead,count,stayed,stayed_low,stayed_high,within_50mm,within_20mm,force_p90_N,"
+         "within_50mm_low,within_50mm_high,within_20mm_low,within_20mm_high,captures\n";
 }
 
-void write_arctic(std::ostream& csv, const Contender& contender, const std::string& group,
+void write_arctic(std::ostream& csv, const Contender& contender, const std::string& split,
                   const std::string& lead, const std::vector<WindowOutcome>& outcomes) {
   const std::size_t to_the_end = stayed(outcomes, 0.05);
   const Interval interval = wilson(to_the_end, outcomes.size());
-  (CsvRows(csv) << contender.engine << contender.setting << group << lead << outcomes.size() << to_the_end
+  const Interval loose = share_interval(outcomes, 0.05), tight = share_interval(outcomes, 0.02);
+  (CsvRows(csv) << contender.engine << contender.setting << split << lead << outcomes.size() << to_the_end
                 << interval.low << interval.high << share_within(outcomes, 0.05)
-                << share_within(outcomes, 0.02) << force_p90(outcomes))
+                << share_within(outcomes, 0.02) << force_p90(outcomes) << loose.low << loose.high << tight.low
+                << tight.high << by_label(outcomes, &WindowLabels::capture).size())
       .end_row();
 }
 

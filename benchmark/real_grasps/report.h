@@ -63,15 +63,20 @@ void write_events_header(std::ostream& csv);
 void write_events(std::ostream& csv, const Contender& contender, const std::string& row,
                   const std::vector<Event>& events);
 
+/// How much larger the fraction of frames within 20 mm is than with a rigid hand.
+std::string line_against_rigid(const std::vector<WindowOutcome>& outcomes,
+                               const std::vector<WindowOutcome>& rigid);
+
 /// Fractions of frames over the leads of windows.
 struct LeadSpread {
   std::vector<double> within_50mm, within_20mm;
 };
 std::string line(const LeadSpread& spread);
 
-/// real_grasps_arctic.csv: a line for each contender, group of windows and lead.
+/// real_grasps_arctic.csv: a line for each contender, lead and split of the windows (`all`, `person NAME`,
+/// `object NAME`).
 void write_arctic_header(std::ostream& csv);
-void write_arctic(std::ostream& csv, const Contender& contender, const std::string& group,
+void write_arctic(std::ostream& csv, const Contender& contender, const std::string& split,
                   const std::string& lead, const std::vector<WindowOutcome>& outcomes);
 
 }  // namespace mrhi::real_grasps

@@ -34,25 +34,33 @@ Interval wilson(std::size_t successes, std::size_t trials) {
   return {successes > 0 ? middle - half : 0.0, successes < trials ? middle + half : 1.0};
 }
 
-// Efron & Tibshirani 1993, chapter 8: resample independent units, the groups.
 Interval grouped(const std::vector<Share>& groups) {
-  std::size_t successes = 0, trials = 0;
-  for (const Share& group : groups) successes += group.successes, trials += group.trials;
-  Interval interval = wilson(successes, trials);
-  if (trials == 0) return interval;
+  Share all;
+  for (const Share& group : groups) all.successes += group.successes, all.trials += group.trials;
+  Interval interval = wilson(all.successes, all.trials);
+  if (all.trials == 0) return interval;
+  const Interval resampled = bootstrapped(groups);
+  return {std::min(interval.low, resampled.low), std::max(interval.high, resampled.high)};
+}
+
+// Efron & Tibshirani 1993, chapter 8: resample independent units, the groups.
+Interval bootstrapped(const std::vector<Share>& groups, const std::vector<Share>& baseline) {
   Random random(1);
   std::vector<double> ratios;
   for (int i = 0; i < kResamples; ++i) {
-    successes = trials = 0;
+    Share sum, of_baseline;
     for (std::size_t k = 0; k < groups.size(); ++k) {
-      const Share& group = groups[random.bits() % groups.size()];
-      successes += group.successes, trials += group.trials;
+      const std::size_t drawn = random.bits() % groups.size();
+      sum.successes += groups[drawn].successes, sum.trials += groups[drawn].trials;
+      if (baseline.empty()) continue;
+      of_baseline.successes += baseline[drawn].successes, of_baseline.trials += baseline[drawn].trials;
     }
-    if (trials > 0) ratios.push_back(ratio(successes, trials));
+    if (sum.trials == 0 || (!baseline.empty() && of_baseline.trials == 0)) continue;
+    ratios.push_back(ratio(sum.successes, sum.trials) -
+                     (baseline.empty() ? 0.0 : ratio(of_baseline.successes, of_baseline.trials)));
   }
-  interval.low = std::min(interval.low, quantile(ratios, 0.025));
-  interval.high = std::max(interval.high, quantile(ratios, 0.975));
-  return interval;
+  if (ratios.empty()) return {};
+  return {quantile(ratios, 0.025), quantile(ratios, 0.975)};
 }
 
 }  // namespace mrhi::real_grasps

@@ -26,4 +26,8 @@ struct Share {
 /// and 1.
 Interval grouped(const std::vector<Share>& groups);
 
+/// The bootstrap over groups alone, for trials as dependent as the frames of a recording. With `baseline`, of
+/// the difference between the ratios of two sets of trials in the same groups.
+Interval bootstrapped(const std::vector<Share>& groups, const std::vector<Share>& baseline = {});
+
 }  // namespace mrhi::real_grasps

@@ -5,8 +5,10 @@ import os
 import pickle
 import struct
 import zipfile
+from xml.etree import ElementTree
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 POINT_TYPES = {'float': 'f4', 'float32': 'f4', 'double': 'f8', 'float64': 'f8', 'uchar': 'u1', 'uint8': 'u1', 'char': 'i1', 'int8': 'i1',
                'short': 'i2', 'ushort': 'u2', 'int': 'i4', 'int32': 'i4', 'uint': 'u4', 'uint32': 'u4'}
@@ -118,6 +120,23 @@ def read_points(path):
     return _checked(path, lambda: readers[ending](data).astype(float))
 
 
+def read_triangles(path):
+    """Of an OBJ; none of other meshes."""
+    if not path.endswith('.obj'):
+        return np.empty((0, 3), int)
+    with open(path, encoding='utf-8', errors='replace') as file:
+        faces = [[int(corner.split('/')[0]) - 1 for corner in line.split()[1:]] for line in file if line.startswith('f ')]
+    return np.array([(face[0], face[i], face[i + 1]) for face in faces for i in range(1, len(face) - 1)], int).reshape(-1, 3)
+
+
+def read_masses(path):
+    """{link: mass [kg]} of a URDF; none without the file."""
+    if not os.path.exists(path):
+        return {}
+    return {link.get('name'): float(link.find('inertial/mass').get('value')) for link in ElementTree.parse(path).iter('link')
+            if link.find('inertial/mass') is not None}
+
+
 def _obj(data):
     return np.array([[float(x) for x in line.split()[1:4]] for line in data.decode('utf-8', 'replace').split('\n')
                      if line.startswith('v ')])
@@ -145,12 +164,71 @@ def _ply(data):
 def _glb(data):
     length, = struct.unpack('<I', data[12:16])
     scene, binary = json.loads(data[20:20 + length]), data[28 + length:]
-    found = []
-    for primitive in (p for mesh in scene['meshes'] for p in mesh['primitives']):
+    return np.vstack([points @ turn.T + shift for mesh, turn, shift in _placed(scene) for points in _positions(scene, binary, mesh)])
+
+
+def _placed(scene):
+    """(mesh, linear part, shift) of each node with a mesh, in the scene; without nodes, of each mesh."""
+    if 'nodes' not in scene:
+        return [(mesh, np.eye(3), np.zeros(3)) for mesh in range(len(scene['meshes']))]
+    children = {child for node in scene['nodes'] for child in node.get('children', [])}
+    found, waiting = [], [(i, np.eye(4)) for i in range(len(scene['nodes'])) if i not in children]
+    while waiting:
+        number, parent = waiting.pop()
+        node = scene['nodes'][number]
+        own = np.reshape(node.get('matrix', np.eye(4)), (4, 4)).T.astype(float)  # glTF stores columns
+        if 'matrix' not in node:
+            own[:3, :3] = Rotation.from_quat(node.get('rotation', [0, 0, 0, 1])).as_matrix() * node.get('scale', [1, 1, 1])
+            own[:3, 3] = node.get('translation', [0, 0, 0])
+        placed = parent @ own
+        waiting += [(child, placed) for child in node.get('children', [])]
+        if 'mesh' in node:
+            found.append((node['mesh'], placed[:3, :3], placed[:3, 3]))
+    return found
+
+
+def _positions(scene, binary, mesh):
+    for primitive in scene['meshes'][mesh]['primitives']:
         accessor = scene['accessors'][primitive['attributes']['POSITION']]
         view = scene['bufferViews'][accessor['bufferView']]
         start = view.get('byteOffset', 0) + accessor.get('byteOffset', 0)
         step = view.get('byteStride', 12)
         rows = np.frombuffer(binary, 'u1', (accessor['count'] - 1) * step + 12, start)
-        found.append(np.lib.stride_tricks.as_strided(rows, (accessor['count'], 12), (step, 1)).copy().view('<f4'))
-    return np.vstack(found)
+        yield np.lib.stride_tricks.as_strided(rows, (accessor['count'], 12), (step, 1)).copy().view('<f4').astype(float)
+
+
+def read_bvh(path):
+    """Of a motion: names of its joints, in a parent's order before its children's; places (frames, 3) and rotations of each, in the
+    file's unit; seconds a frame."""
+    names, parents, offsets, channels, open_joints = [], [], [], [], []
+    with open(path, encoding='utf-8') as file:
+        for words in map(str.split, file):
+            if words[:1] in (['ROOT'], ['JOINT'], ['End']):
+                parents.append(open_joints[-1] if open_joints else None)
+                open_joints.append(len(names))
+                names.append(words[1])
+                channels.append([])
+            elif words[:1] == ['OFFSET']:
+                offsets.append([float(x) for x in words[1:4]])
+            elif words[:1] == ['CHANNELS']:
+                channels[-1] = words[2:]
+            elif words[:1] == ['}']:
+                open_joints.pop()
+            elif words[:2] == ['Frame', 'Time:']:
+                seconds = float(words[2])
+                break
+        else:
+            raise CaptureError('%s: no motion; a BVH is needed' % path)
+        rows = np.array([[float(x) for x in line.split()] for line in file if line.strip()])
+    places, turns, begin = [], [], 0
+    for parent, offset, of in zip(parents, offsets, channels):
+        told = dict(zip(of, rows[:, begin:begin + len(of)].T))
+        begin += len(of)
+        place = np.tile(np.array(offset), (len(rows), 1)) + np.array(
+            [told.get(axis + 'position', np.zeros(len(rows))) for axis in 'XYZ']).T
+        order = ''.join(name[0] for name in of if name.endswith('rotation'))  # upper case: about the axes that turn along
+        turn = Rotation.from_euler(order, np.array([told[axis + 'rotation'] for axis in order]).T, degrees=True) if order else (
+            Rotation.from_quat(np.tile([0, 0, 0, 1], (len(rows), 1))))
+        places.append(place if parent is None else places[parent] + turns[parent].apply(place))
+        turns.append(turn if parent is None else turns[parent] * turn)
+    return names, places, turns, seconds

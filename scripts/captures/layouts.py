@@ -13,13 +13,16 @@ import numpy as np
 import yaml
 from scipy.spatial.transform import Rotation
 
-from .files import CaptureError, read_npy, read_npz, read_pickle
+from .files import CaptureError, read_bvh, read_npy, read_npz, read_pickle
+from .umetrack import UmeTrack
 
 # `hands`: {side: (frames, 21, 3)} in MANO's order from palm to tip, nan where not seen; `poses`: (frames, 4, 4) of the object;
-# `mesh`: its file, `scale` its unit in metres; `ranges`: [first, end) frames that may be cut, or None for all.
-Capture = collections.namedtuple('Capture', 'name person thing times hands poses mesh scale ranges')
-Capture.__new__.__defaults__ = (1.0, None)
+# `mesh`: its file, `scale` its unit in metres; `ranges`: [first, end) frames that may be cut, or None for all. An object on a
+# hinge has `angles` [rad], 0 where it is closed, and `mesh` is (top, bottom): the top turns about -z of the bottom, whose pose is told.
+Capture = collections.namedtuple('Capture', 'name person thing times hands poses mesh scale ranges angles')
+Capture.__new__.__defaults__ = (1.0, None, None)
 SIDES = ('right', 'left')
+TIPS_LAST = [0, 13, 14, 15, 16, 1, 2, 3, 17, 4, 5, 6, 18, 10, 11, 12, 19, 7, 8, 9, 20]  # of MANO's joints, then the tips from the thumb on
 
 
 def _poses(rotations, places):
@@ -53,6 +56,45 @@ def arctic(root, mano, models):
                       _poses(Rotation.from_rotvec(moved[:, 1:4]), moved[:, 4:7] / 1000.0),
                       os.path.join(models or os.path.join(root, 'meta', 'object_vtemplates'), name.split('_')[0], 'mesh.obj'),
                       0.001, _runs(closed))
+
+
+def _hinged(root, name, person, joints, rotations, places, angles):
+    """A capture of ARCTIC's objects of two parts, by the meshes that ArtiGrasp and DexMachina have."""
+    thing = name.split('_')[0]
+    meshes = tuple(os.path.join(root, thing, part + '_watertight_tiny.obj') for part in ('top', 'bottom'))
+    return Capture('%s_%s' % (person, name), person, thing, np.arange(len(places)) / 30.0,
+                   {side: np.asarray(of, float)[:, TIPS_LAST] for side, of in joints.items()}, _poses(rotations, places), meshes,
+                   angles=np.ravel(angles))
+
+
+def artigrasp(root, mano, models):
+    """ARCTIC as ArtiGrasp has it: arctic/OBJECT/sN/NAME.object.npy (millimetres), mano_double/sN/NAME.mano.npy (`trans`) and
+    mano_double/ee/sN/NAME_{r,l}.npy, the joints in the world; 30 Hz. Its first frames are blank: the wrist is not where it is told."""
+    for path in _folders(root, 'arctic/*/s*/*.object.npy', 'the folder that arctic and mano_double are in'):
+        person, name = path.split(os.sep)[-2], os.path.basename(path)[:-len('.object.npy')]
+        files = {side: os.path.join(root, 'mano_double', 'ee', person, '%s_%s.npy' % (name, side[0])) for side in SIDES}
+        fitted = os.path.join(root, 'mano_double', person, name + '.mano.npy')
+        if not all(map(os.path.exists, (fitted, *files.values()))):
+            continue  # a stand-in of s5, by a network
+        moved, told, joints = np.asarray(read_npy(path), float), read_npy(fitted), {}
+        for side, file in files.items():
+            joints[side] = np.asarray(read_npy(file), float)[:len(moved)]
+            beyond = joints[side][:, 0] - np.asarray(told[side]['trans'], float)[:len(joints[side])]
+            joints[side][np.abs(beyond - np.median(beyond, axis=0)).max(axis=1) > 1e-3] = np.nan
+        count = min(len(moved), *map(len, joints.values()))
+        yield _hinged(models or os.path.join(root, 'arctic'), name, person, {side: of[:count] for side, of in joints.items()},
+                      Rotation.from_rotvec(moved[:count, 1:4]), moved[:count, 4:7] / 1000.0, moved[:count, 0])
+
+
+def dexmachina(root, mano, models):
+    """ARCTIC as DexMachina has it: processed/sNN/NAME.npy (`joints.right`, `.left`, `obj_trans`, `obj_quat` with w first, `obj_arti`);
+    30 Hz."""
+    for path in _folders(root, 'processed/s*/*.npy', 'the folder that processed and the objects are in'):
+        told = read_npy(path)
+        of, world = told['params'], told['world_coord']
+        yield _hinged(models or root, os.path.basename(path)[:-4], path.split(os.sep)[-2],
+                      {side: world['joints.' + side] for side in SIDES},
+                      Rotation.from_quat(np.asarray(of['obj_quat'])[:, [1, 2, 3, 0]]), np.asarray(of['obj_trans'], float), of['obj_arti'])
 
 
 def _runs(flags):
@@ -120,11 +162,13 @@ def _yaml(path):
 
 
 def hot3d(root, mano, models):
-    """SEQUENCE/mano_hand_pose_trajectory.jsonl (wrist_xform, pose of 15 components, betas; 0: left, 1: right) and
-    dynamic_objects.csv; MODELS/UID.glb."""
-    for path in _folders(root, '*/mano_hand_pose_trajectory.jsonl', 'the folder of the sequences'):
+    """SEQUENCE/dynamic_objects.csv and umetrack_hand_pose_trajectory.jsonl (wrist_xform, joint_angles; 0: left, 1: right) with
+    umetrack_hand_user_profile.json, or mano_hand_pose_trajectory.jsonl (pose of 15 components, betas); MODELS/UID.glb."""
+    for path in _folders(root, '*/dynamic_objects.csv', 'the folder of the sequences'):
         folder = os.path.dirname(path)
-        with open(path, encoding='utf-8') as file:
+        profile = os.path.join(folder, 'umetrack_hand_user_profile.json')
+        kind = 'umetrack' if os.path.exists(profile) else 'mano'
+        with open(os.path.join(folder, kind + '_hand_pose_trajectory.jsonl'), encoding='utf-8') as file:
             lines = [json.loads(line) for line in file if line.strip()]
         stamps = [line['timestamp_ns'] for line in lines]
         of_hand, hands = [line['hand_poses'] for line in lines], {}
@@ -134,11 +178,14 @@ def hot3d(root, mano, models):
                 continue
             some = [of_hand[i][key] for i in seen]
             turn = Rotation.from_quat(np.array([hand['wrist_xform']['q_wxyz'] for hand in some], float)[:, [1, 2, 3, 0]])
-            model, hands[side] = mano(side), np.full((len(lines), 21, 3), np.nan)
-            hands[side][seen] = model.joints(turn, model.pose([hand.get('pose', hand.get('joint_angles')) for hand in some], mean=True),
-                                             [hand['wrist_xform']['t_xyz'] for hand in some],
-                                             next(hand['betas'] for hand in some if 'betas' in hand))
-        with open(os.path.join(folder, 'dynamic_objects.csv'), newline='', encoding='utf-8') as file:
+            places, hands[side] = [hand['wrist_xform']['t_xyz'] for hand in some], np.full((len(lines), 21, 3), np.nan)
+            if kind == 'umetrack':
+                hands[side][seen] = UmeTrack(profile).joints(side, turn, [hand['joint_angles'] for hand in some], places)
+            else:
+                model = mano(side)
+                hands[side][seen] = model.joints(turn, model.pose([hand['pose'] for hand in some], mean=True), places,
+                                                 next(hand['betas'] for hand in some if 'betas' in hand))
+        with open(path, newline='', encoding='utf-8') as file:
             rows = list(csv.DictReader(file))
         for thing in sorted({row['object_uid'] for row in rows}):
             at = {int(row['timestamp[ns]']): [float(row[key]) for key in (
@@ -209,6 +256,39 @@ def grab(root, mano, models):
                       os.path.join(models or root, str(told['object']['object_mesh'])))
 
 
+# Length of the last bone with the skin at its end, against the bone before, from the thumb to the little finger: means of Buryanov
+# & Kotiuk 2010, Tables 1 and 2.
+LAST_BONES = [0.81, 0.88, 0.81, 0.83, 1.09]
+
+
+def manipnet(root, mano, models):
+    """SEQUENCE/OBJECT.bvh, leftHand.bvh and rightHand.bvh, in decimetres with y up; OBJECT.obj in MODELS or below ObjectModel; 120 Hz.
+    The tips are told by none: they are where the last bones end on average. One person."""
+    for path in _folders(root, '*/rightHand.bvh', 'the folder of the sequences'):
+        folder, hands = os.path.dirname(path), {}
+        if not os.path.exists(os.path.join(folder, 'leftHand.bvh')):
+            continue
+        for side in SIDES:
+            names, places, turns, seconds = read_bvh(os.path.join(folder, side + 'Hand.bvh'))
+            joints = [places[0]]
+            for finger, longer in zip(('THUMB', 'INDEX', 'MIDDLE', 'RING', 'PINKY'), LAST_BONES):
+                *_, base, middle, last = (i for i, name in enumerate(names) if name.startswith(finger))  # the thumb has a fourth, first
+                before = turns[middle].inv().apply(places[last] - places[middle])[0]  # a straight finger goes on along it
+                joints += [places[base], places[middle], places[last], places[last] + turns[last].apply(longer * before)]
+            hands[side] = 0.1 * np.stack(joints, axis=1)
+        for file in sorted(glob.glob(os.path.join(glob.escape(folder), '*.bvh'))):
+            thing = os.path.basename(file)[:-4]
+            if thing.endswith('Hand'):
+                continue
+            _, places, turns, seconds = read_bvh(file)
+            folder_of_meshes = glob.escape(models or os.path.join(root, 'ObjectModel'))
+            meshes = sorted(glob.glob(os.path.join(folder_of_meshes, '**', thing + '.obj'), recursive=True))
+            count = min(len(places[0]), *map(len, hands.values()))
+            yield Capture(os.path.basename(folder) + '_' + thing, 'one', thing, seconds * np.arange(count),
+                          {side: joints[:count] for side, joints in hands.items()}, _poses(turns[0][:count], 0.1 * places[0][:count]),
+                          meshes[0] if meshes else thing + '.obj', 0.1)
+
+
 def _points_of(root, path):
     from .files import read_points
     return read_points(os.path.join(root, str(path)))
@@ -248,5 +328,5 @@ def table(root, mano, models):
                       mesh[0] if mesh else start + '.obj')
 
 
-LAYOUTS = {'arctic': arctic, 'dexycb': dexycb, 'grab': grab, 'hocap': hocap, 'hot3d': hot3d, 'oakink2': oakink2, 'table': table,
-           'taco': taco}
+LAYOUTS = {layout.__name__: layout for layout in (
+    arctic, artigrasp, dexmachina, dexycb, grab, hocap, hot3d, manipnet, oakink2, table, taco)}

@@ -3,20 +3,27 @@ import csv
 import os
 
 import numpy as np
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, cKDTree
+from scipy.spatial.transform import Rotation
 
 FINGERS = ('thumb', 'index', 'middle', 'ring', 'pinky')
 LEAD, SHORTEST = 1.0, 0.9  # seconds before a window, and that it lasts
+CLOSED, KEPT = 0.1, 0.05   # of a hinge: at most so far from closed, and so much it moves within a window [rad]
+FURTHEST = 3.2             # that a hinge turns [rad]
+GAP, BRIDGED = 0.02, 0.05  # of a hull from the mesh [m], and the fraction of its surface that may be farther
+SAMPLES = 20000            # points on a surface: some 3 mm apart on a laptop
 LIFTED, NEAR = 0.02, 0.012  # metres: above where it lay; of a joint from the object's hull
 PULP = 0.008               # tips lie on the skin: the bone ends so much before [m]
 
 
-def runs(flags, times, longest=float('inf')):
-    """[first, end) of each run of frames that lasts long enough, in sections of at most `longest` seconds."""
+def runs(flags, times, longest=float('inf'), angles=None):
+    """[first, end) of each run of frames that lasts long enough, in sections of at most `longest` seconds, in which a hinge keeps
+    its angle, if `angles` are given."""
     found, first = [], 0
     while first < len(flags):
         end = first
-        while end < len(flags) and flags[end] and times[end] - times[first] < longest:
+        while end < len(flags) and flags[end] and times[end] - times[first] < longest and (
+                angles is None or np.ptp(angles[first:end + 1]) <= KEPT):
             end += 1
         long_enough = end > first and times[end - 1] - times[first] >= SHORTEST
         if long_enough:
@@ -25,18 +32,19 @@ def runs(flags, times, longest=float('inf')):
     return found
 
 
-def carried(capture, points):
-    """For each frame: the object is above where it lay, and a joint is at its hull."""
-    hull = ConvexHull(points)
-    corners = points[hull.vertices]
-    turned = np.einsum('fij,vj->fvi', capture.poses[:, :3, :3], corners) + capture.poses[:, None, :3, 3]
-    lowest = turned[:, :, 2].min(axis=1)
-    held = np.zeros(len(lowest), bool)
-    for joints in capture.hands.values():
-        local = np.einsum('fji,fkj->fki', capture.poses[:, :3, :3], joints - capture.poses[:, None, :3, 3])
-        beyond = (local @ hull.equations[:, :3].T + hull.equations[:, 3]).max(axis=2)
-        with np.errstate(invalid='ignore'):
-            held |= (beyond < NEAR).any(axis=1)
+def carried(capture, parts):
+    """For each frame: the object is above where it lay, and a joint is at the hull of one of its `parts`, (poses, points)."""
+    held, lowest = np.zeros(len(capture.times), bool), np.full(len(capture.times), np.inf)
+    for poses, points in parts:
+        hull = ConvexHull(points)
+        corners = points[hull.vertices]
+        turned = np.einsum('fij,vj->fvi', poses[:, :3, :3], corners) + poses[:, None, :3, 3]
+        lowest = np.minimum(lowest, turned[:, :, 2].min(axis=1))
+        for joints in capture.hands.values():
+            local = np.einsum('fji,fkj->fki', poses[:, :3, :3], joints - poses[:, None, :3, 3])
+            beyond = (local @ hull.equations[:, :3].T + hull.equations[:, 3]).max(axis=2)
+            with np.errstate(invalid='ignore'):
+                held |= (beyond < NEAR).any(axis=1)
     flags = held & (lowest > np.percentile(lowest, 5) + LIFTED)
     if capture.ranges is not None:
         inside = np.zeros(len(flags), bool)
@@ -44,6 +52,28 @@ def carried(capture, points):
             inside[first:end] = True
         flags &= inside
     return flags
+
+
+def bridged(points, triangles):
+    """Fraction of the surface of a mesh's hull that is farther than GAP from the mesh: what the hull bridges."""
+    mesh = _on_surface(points, triangles)
+    return (cKDTree(mesh).query(_on_surface(points, ConvexHull(points).simplices))[0] > GAP).mean()
+
+
+def _on_surface(points, triangles):
+    """Points evenly on a surface, the same each time."""
+    random = np.random.RandomState(1)
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    some = random.choice(len(triangles), SAMPLES, p=areas / areas.sum())
+    u, v = random.rand(2, SAMPLES, 1)
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    return a[some] + u * (b - a)[some] + v * (c - a)[some]
+
+
+def turned_top(points, angle):
+    """The top of an object on a hinge, in the frame of its bottom."""
+    return Rotation.from_rotvec([0, 0, -angle]).apply(points)
 
 
 def columns():
@@ -128,7 +158,11 @@ def link_of(folder, name, mesh_name, points, mass=None, density=None):
     return link, mass
 
 
-def write_scene(folder, name, links, joint=''):
+def write_scene(folder, name, links):
+    """Of a body, or of two: `thing`, and `top` on a hinge."""
+    joint = '' if len(links) == 1 else (
+        '<joint name="hinge" type="revolute"><parent link="thing"/><child link="top"/><axis xyz="0 0 -1"/>'
+        '<limit lower="%g" upper="%g" effort="0" velocity="0"/></joint>' % (-CLOSED, FURTHEST))
     with open(os.path.join(folder, name + '.urdf'), 'w', encoding='utf-8') as file:
         file.write('<robot name="%s"><link name="world"/>%s<joint name="j" type="floating"><parent link="world"/>'
                    '<child link="thing"/></joint>%s</robot>\n' % (name, ''.join(links), joint))

@@ -137,10 +137,14 @@ def _hand(palms, phalanges, count):
     hand = numpy.full(count, -1)
     hand[place] = rows['hand_id'].to_numpy()
     kept = (bones['hand_id'].to_numpy() == hand[bone_place]) & (bones['finger'].to_numpy() < PALM)
-    bones, bone_place = bones[kept], bone_place[kept]
-    body.bones[bone_place, 4 * bones['finger'].to_numpy() + bones['bone'].to_numpy()] = vectors(
-        bones, ('sx', 'sy', 'sz', 'ex', 'ey', 'ez'))
+    put_bones(bones[kept], bone_place[kept], body.bones)
     return body
+
+
+def put_bones(phalanges, places, bones):
+    """Rows of hands.csv into bones (frames, 20, 6): start and end of each [m]."""
+    bones[places, 4 * phalanges['finger'].to_numpy() + phalanges['bone'].to_numpy()] = vectors(
+        phalanges, ('sx', 'sy', 'sz', 'ex', 'ey', 'ez'))
 
 
 def keypoints(bones):

@@ -48,7 +48,8 @@ def as_json(story):
         'losses': [_loss(loss) for loss in story.losses],
         'touches': [{'object': touch.object, 'hand_id': touch.hand_id, 'from': touch.start, 'until': touch.until,
                      'fingers': [FINGERS[finger] for finger in touch.fingers], 'speed': touch.speed} for touch in story.touches],
-        'moments': [dict(moment._asdict(), place=list(moment.place), palm=list(moment.palm), across=list(moment.across))
+        'moments': [dict(moment._asdict(), place=list(moment.place), palm=list(moment.palm), across=list(moment.across), keypoints={
+            str(hand.id): hand.keypoints(moment.frame).tolist() for _, hand in sorted(story.hands.items()) if moment.frame in hand.frame})
                     for moment in story.moments],
         'events': [{'time': event.time, 'kind': event.kind, 'object': event.object, 'hand_id': event.hand_id}
                    for event in story.events],

@@ -5,6 +5,7 @@ import collections
 import numpy
 
 from . import grip
+from .demonstration import BONES, keypoints, put_bones
 from .tables import vectors
 
 LEVELS = ('none', 'hover', 'contact', 'grasp')
@@ -99,6 +100,13 @@ class HandStory:
         rows = [sample[frame] for frame in last['frame']]
         tips[rows, last['finger'].to_numpy(int)] = vectors(last, ('ex', 'ey', 'ez'))
         return tips
+
+    def keypoints(self, frame):
+        """The 21 joints in a frame, as exports have them (demonstration.keypoints); nan where unknown [m]."""
+        rows = self.phalanges[(self.phalanges['frame'] == frame) & (self.phalanges['finger'] < grip.PALM)]
+        bones = numpy.full((1, len(BONES), 6), numpy.nan)
+        put_bones(rows, 0, bones)
+        return keypoints(bones)[0]
 
     def spread(self, i, fingers):
         """Mean distance of these fingers' tips from their centre [m]."""

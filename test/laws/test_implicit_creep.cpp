@@ -5,8 +5,7 @@
 namespace mrhi {
 namespace {
 
-using testing::at;
-using testing::PinchScene;
+using namespace testing;
 
 constexpr double kGravity = 9.81;      // [m/s^2]
 constexpr double kRate = 60.0;         // frames [1/s]
@@ -59,6 +58,51 @@ TEST(ImplicitCreep, a_pinched_cube_stays_where_it_is_for_ten_minutes_under_its_w
   const double speed = creep(Vector3(0, 0, -kGravity));
   RecordProperty("creep_um_per_s", std::to_string(1e6 * speed));
   EXPECT_LE(speed, kCreep);
+}
+
+/// Thumb and index finger close round a rod that lies along their last phalanges, fast and at a tracker's
+/// rate.
+Hand round_a_rod(double rod_radius, double press, double t) {
+  constexpr double kRadius = 0.009, kGap = 0.001, kClosing = 0.035;
+  const double x = rod_radius + kRadius + kGap - (kGap + press) * smooth(t, kClosing);
+  Hand hand = empty_hand();
+  hand.palm.position = Vector3(0.02, 0.16, -0.02);
+  const auto add = [&](int finger, int bone, const Vector3& start, const Vector3& end) {
+    add_finger(hand, capsule_index(finger, bone), start, end, kRadius);
+  };
+  add(1, 0, {0.02, 0.14, 0}, {x + 0.02, 0.073, 0});
+  add(1, 1, {x + 0.02, 0.073, 0}, {x + 0.01, 0.034, 0});
+  add(1, 2, {x + 0.01, 0.034, 0}, {x, 0.0125, 0});
+  add(1, 3, {x, 0.0125, 0}, {x, -0.0125, 0});
+  add(0, 1, {-0.02, 0.13, 0}, {-x - 0.015, 0.072, 0});
+  add(0, 2, {-x - 0.015, 0.072, 0}, {-x, 0.0125, 0});
+  add(0, 3, {-x, 0.0125, 0}, {-x, -0.0125, 0});
+  return hand;
+}
+
+TEST(ImplicitCreep, a_rod_along_the_fingers_comes_to_rest_with_the_shipped_filter) {
+  const double press = 0.002;
+  Configuration configuration;  // as shipped
+  configuration.gravity = Vector3(0, 0, -kGravity);
+  for (const double radius : {0.004, 0.006, 0.01}) {
+    for (const Shape& shape : {Shape(Pill{radius, 0.03}), Shape(Cylinder{radius, 0.03})}) {
+      Body rod = box_body({2 * radius, 0.06, 2 * radius}, 0.045);
+      rod.material.stiffness = 2000.0;
+      rod.material.static_friction = rod.material.dynamic_friction = 0.7;
+      rod.shapes = {{shape, {Vector3::Zero(), Quaternion(Eigen::AngleAxisd(0.5 * M_PI, Vector3::UnitX()))}}};
+      complete(rod);
+      Simulation simulation(scene_of(rod), configuration);
+      Pose settled;
+      play(simulation, 0.0, 8.0, 115.0, [&](double t) {
+        if (t <= 4.0) settled = simulation.state().bodies[0].pose;
+        return round_a_rod(radius, press, t);
+      });
+      const Vector3 end = simulation.state().bodies[0].pose.position;
+      ASSERT_LT(end.norm(), 0.02) << "held";
+      EXPECT_LE((end - settled.position).norm() / 4.0, kCreep)
+          << "radius " << radius << ", " << (std::holds_alternative<Pill>(shape) ? "capsule" : "cylinder");
+    }
+  }
 }
 
 }  // namespace

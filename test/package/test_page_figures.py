@@ -75,5 +75,29 @@ class Mechanism(unittest.TestCase):
         self.assertTrue(page_figures.is_stale("speed"))
 
 
+class TestCaptures(unittest.TestCase):
+    def test_a_set_is_reported_with_intervals_splits_and_what_was_held_out(self):
+        root = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, root)
+        head = ("engine,setting,split,lead,count,stayed,stayed_low,stayed_high,within_50mm,within_20mm,force_p90_N,"
+                "within_50mm_low,within_50mm_high,within_20mm_low,within_20mm_high,captures")
+        rows = ["none,rigid hand,all,,2,1,0,1,0.6,0.4,0,0.5,0.7,0.3,0.5,2"] + [
+            "ours,implicit,%s,1,2,1,0,1,%s,0.5,17.7,0.6,0.8,0.4,0.6,2" % row
+            for row in (("all", 0.7), ("person s1", 0.65), ("person s2", 0.75), ("object box", 0.7))]
+        for name, lines in (("windows.csv", ["window,seconds,mass_kg,set,person,object", "s1_box_use_01_3,1,1,artigrasp,s1,box",
+                                             "s2_notebook_use_02_7,1,1,artigrasp,s2,box"]), ("real_grasps_arctic.csv", [head] + rows)):
+            with open(os.path.join(root, name), "w", encoding="utf-8") as file:
+                file.write("\n".join(lines) + "\n")
+        told = ("s1_box_use_01_3   30 frames of   1 captures; within 50 mm  40 % (40 to 40), within 20 mm  20 % (20 to 20); ...\n"
+                "s2_notebook_use_02_7   10 frames of   1 captures; within 50 mm  90 % (90 to 90), within 20 mm  80 % (80 to 80); ...\n"
+                "  against a rigid hand: within 20 mm +8 points (-4 to +13)\n")
+        figures = page_recipes.captures_figures([[root, {"defaults": (root, told), "assist alone": (root, told)}]])
+        self.assertEqual(figures["sets"].split("\n")[-1], "| ARCTIC | 2 (2) | 2, 1 | 70 % (60 to 80) | 50 % (40 to 60) | 18 N | "
+                         "40 % (30 to 50) | +8 (-4 to +13) |")
+        self.assertEqual(figures["chosen"], "90 % and 80 % in the 1 that the defaults were chosen on, 40 % and 20 % in the other 1")
+        self.assertEqual(figures["settings"], "assist alone 70 % and 50 %, 18 N; `rigid` 60 % and 40 %")
+        self.assertEqual((figures["person"], figures["object"]), ("s2 75 %, s1 65 %", "box 70 %"))
+
+
 if __name__ == "__main__":
     unittest.main()

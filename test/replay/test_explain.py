@@ -180,6 +180,13 @@ class ExplainTest(Folders):
         self.assertEqual([loss['cause'] for loss in told['losses']], ['too_little_friction'])
         self.assertEqual(told['losses'][0]['text'], story.losses[0].text)
         self.assertLessEqual({'free', 'contact', 'slip', 'drop'}, {part['state'] for part in told['objects'][0]['line']})
+        for moment in told['moments']:
+            (hand, points), = moment['keypoints'].items()
+            hand = story.hands[int(hand)]
+            tips = hand.tips[list(hand.frame).index(moment['frame'])]
+            self.assertEqual(len(points), 21)
+            for finger in (0, 1):  # those that this hand has
+                self.assertEqual(points[4 + 4 * finger], [round(x, 6) for x in tips[finger]])
         page = page_of(story)
         self.assertIn('too slippery', page)
         self.assertIn('<h3>object, %.2f s' % story.losses[0].until, page)  # as its text has it

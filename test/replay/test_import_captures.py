@@ -11,6 +11,7 @@ import sys
 import tempfile
 import types
 import unittest
+import warnings
 from collections import OrderedDict
 
 import numpy as np
@@ -21,7 +22,9 @@ from scipy.spatial.transform import Rotation
 PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(PACKAGE, 'scripts'))
 from captures.files import Arrays, CaptureError, read_pickle, read_points  # noqa: E402
+from captures.layouts import TIPS_LAST  # noqa: E402
 from captures.mano import Mano, ORDER, PARENTS  # noqa: E402
+from captures.umetrack import UmeTrack  # noqa: E402
 
 FRAMES, LIES = 90, 30  # of a capture; of these the object lies still
 EDGE = 0.06            # of the cube [m]
@@ -103,8 +106,12 @@ def cube(scale=1.0):
     return np.array([[x, y, z] for x in (-h, h) for y in (-h, h) for z in (-h, h)])
 
 
-def write_obj(path, scale=1.0):
-    text(path, ''.join('v %.6f %.6f %.6f\n' % tuple(v) for v in cube(scale)))
+FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))  # of the cube
+
+
+def write_obj(path, scale=1.0, faces=()):
+    text(path, ''.join('v %.6f %.6f %.6f\n' % tuple(v) for v in cube(scale)) +
+         ''.join('f %s\n' % ' '.join(str(1 + corner) for corner in face) for face in faces))
 
 
 @unittest.skipUnless(hasattr(Rotation, 'as_matrix'), 'scipy is older than 1.4')
@@ -162,7 +169,7 @@ class MadeUp(unittest.TestCase):
             x, y, z = tip + 0.008 * to_tip  # the skin, in the device's axes
             np.testing.assert_allclose([x, -z, y], self.touched[first + i], atol=5e-6)
         with open(os.path.join(self.output, name + '.urdf')) as file:
-            self.assertIn('<mesh filename="%s.obj"/>' % name, file.read())
+            self.assertRegex(file.read(), '<mesh filename="%s(_thing)?.obj"/>' % name)
         return rows[0]
 
     def rows(self, name):
@@ -222,15 +229,121 @@ class Layouts(MadeUp):
         text(os.path.join(folder, 'dynamic_objects.csv'), 'object_uid,timestamp[ns],t_wo_x[m],t_wo_y[m],t_wo_z[m],q_wo_w,q_wo_x,q_wo_y,q_wo_z\n'
              + ''.join('37787722328019,%d,%s\n' % (i * 33333333, ','.join('%.9f' % x for x in (*self.places[i], *self.turns[i].as_quat()[[3, 0, 1, 2]])))
                        for i in range(FRAMES)))
-        vertices = cube().astype('<f4').tobytes()
-        scene = json.dumps({'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}], 'accessors': [{'bufferView': 0, 'count': 8}],
-                            'bufferViews': [{'byteLength': len(vertices)}]}).encode()
+        self.write_glb(os.path.join(self.set, 'object_models', '37787722328019.glb'))
+        self.check('hot3d')
+
+    def umetrack(self, wrist, places, thumb=0.0):
+        """A set of HOT3D with the angles of UmeTrack: of a left hand whose thumb alone is bent."""
+        landmarks = np.zeros((21, 3))
+        landmarks[[6, 7, 0]] = [[30, 20, 0], [60, 20, 0], [90, 20, 0]]  # the thumb's, along x
+        landmarks[1] = [100, 0, 0]  # tip of the index
+        rest = np.zeros((22, 3))
+        rest[:4] = [[10, 20, 0], [20, 20, 0], [30, 20, 0], [60, 20, 0]]
+        bones = np.ones((21, 3), int)
+        bones[[6, 7, 0, 1]] = [[2, 2, 2], [3, 3, 3], [4, 4, 4], [7, 7, 7]]
+        folder = os.path.join(self.set, 'P0001_4bf4e21a')
+        text(os.path.join(folder, 'umetrack_hand_user_profile.json'), json.dumps({'hand_model': {
+            'joint_rotation_axes': np.tile([0, 0, 1.0], (22, 1)).tolist(), 'joint_rest_positions': rest.tolist(),
+            'landmark_rest_positions': landmarks.tolist(), 'landmark_rest_bone_indices': bones.tolist(),
+            'landmark_rest_bone_weights': np.tile([1.0, 0, 0], (21, 1)).tolist()}}))
+        angles = [0.0, 0.0, thumb] + 19 * [0.0]
+        text(os.path.join(folder, 'umetrack_hand_pose_trajectory.jsonl'), ''.join(json.dumps({
+            'timestamp_ns': i * 33333333, 'hand_poses': {key: {'wrist_xform': {
+                'q_wxyz': wrist.as_quat()[[3, 0, 1, 2]].tolist(), 't_xyz': place.tolist()}, 'joint_angles': angles} for key in '01'}}) + '\n'
+            for i, place in enumerate(places)))
+        return folder
+
+    def test_hot3d_by_umetrack_s_hand_without_mano(self):
+        folder = self.umetrack(self.turn, self.touched - self.turn.apply([-0.1, 0, 0]))  # the profile's x is mirrored for a right hand
+        text(os.path.join(folder, 'dynamic_objects.csv'), 'object_uid,timestamp[ns],t_wo_x[m],t_wo_y[m],t_wo_z[m],q_wo_w,q_wo_x,q_wo_y,q_wo_z\n'
+             + ''.join('37787722328019,%d,%s\n' % (i * 33333333, ','.join('%.9f' % x for x in (*self.places[i], *self.turns[i].as_quat()[[3, 0, 1, 2]])))
+                       for i in range(FRAMES)))
+        self.write_glb(os.path.join(self.set, 'object_models', '37787722328019.glb'), 1000, [
+            {'children': [1], 'scale': [0.001] * 3}, {'mesh': 0}])
+        shutil.rmtree(self.mano)
+        self.check('hot3d')
+
+    def test_a_joint_of_umetrack_s_hand_turns_what_is_beyond_it(self):
+        folder = self.umetrack(Rotation.identity(), np.zeros((1, 3)), np.pi / 2)
+        hand = UmeTrack(os.path.join(folder, 'umetrack_hand_user_profile.json'))
+        for side, sign in (('left', 1), ('right', -1)):
+            thumb = hand.joints(side, Rotation.identity(1), [[0.0, 0.0, np.pi / 2] + 19 * [0.0]], np.zeros((1, 3)))[0, 1:5]
+            np.testing.assert_allclose(thumb, np.array([[10, 20, 0], [30, 20, 0], [30, 50, 0], [30, 80, 0]]) * [sign, 1, 1] / 1000, atol=1e-12)
+
+    def write_glb(self, path, scale=1, nodes=None):
+        vertices = cube(scale).astype('<f4').tobytes()
+        scene = {'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}], 'accessors': [{'bufferView': 0, 'count': 8}],
+                 'bufferViews': [{'byteLength': len(vertices)}]}
+        scene = json.dumps(dict(scene, nodes=nodes) if nodes else scene).encode()
         scene += b' ' * (-len(scene) % 4)
-        os.makedirs(os.path.join(self.set, 'object_models'))
-        with open(os.path.join(self.set, 'object_models', '37787722328019.glb'), 'wb') as file:
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, 'wb') as file:
             file.write(b'glTF' + struct.pack('<IIII', 2, 28 + len(scene) + len(vertices), len(scene), 0x4E4F534A) + scene +
                        struct.pack('<II', len(vertices), 0x004E4942) + vertices)
-        self.check('hot3d')
+
+    def test_arctic_s_objects_of_two_parts_as_others_have_them(self):
+        """Both parts are the same cube, closed. ArtiGrasp's first frame is blank."""
+        joints = np.empty((FRAMES, 21, 3))
+        joints[:, TIPS_LAST] = self.joints()
+        turned = np.column_stack([np.full(FRAMES, 0.01), self.turns.as_rotvec(), 1000 * self.places])
+        for part in ('top', 'bottom'):
+            for folder in ('', 'arctic'):
+                write_obj(os.path.join(self.set, folder, 'box', part + '_watertight_tiny.obj'), 1.0, FACES)
+        text(os.path.join(self.set, 'arctic', 'box', 'box.urdf'), '<robot name="box">' + ''.join(
+            '<link name="%s"><inertial><mass value="%g"/></inertial></link>' % (part, 300 * EDGE ** 3 / 2) for part in ('top', 'bottom')) + '</robot>')
+        shutil.copy(os.path.join(self.set, 'arctic', 'box', 'box.urdf'), os.path.join(self.set, 'box', 'box.urdf'))
+        folder = os.path.join(self.set, 'arctic', 'box', 's1')
+        os.makedirs(folder)
+        np.save(os.path.join(folder, 'box_use_01.object.npy'), turned)
+        hands = os.path.join(self.set, 'mano_double')
+        for name in ('s1', 'ee/s1'):
+            os.makedirs(os.path.join(hands, name))
+        of_hand = {'trans': joints[:, 0] - [0.09, 0.006, 0.006]}
+        np.save(os.path.join(hands, 's1', 'box_use_01.mano.npy'), {'right': of_hand, 'left': of_hand})
+        blank = joints.copy()
+        blank[0] = joints[0] - joints[0, 0]
+        for side in 'rl':
+            np.save(os.path.join(hands, 'ee', 's1', 'box_use_01_%s.npy' % side), blank)
+        row = self.check('artigrasp')
+        self.assertEqual((row['person'], row['object']), ('s1', 'box'))
+        os.makedirs(os.path.join(self.set, 'processed', 's01'))
+        np.save(os.path.join(self.set, 'processed', 's01', 'box_use_01.npy'), {
+            'world_coord': {'joints.right': joints, 'joints.left': joints}, 'params': {
+                'obj_trans': self.places, 'obj_quat': self.turns.as_quat()[:, [3, 0, 1, 2]], 'obj_arti': turned[:, :1]}})
+        self.check('dexmachina')
+        row = self.check('dexmachina', '--articulated')
+        with open(os.path.join(self.output, row['window'] + '.urdf')) as file:
+            self.assertIn('<axis xyz="0 0 -1"/>', file.read())
+        self.assertAlmostEqual(float(self.rows(row['window'] + '_object.csv')[0]['angle']), 0.01, delta=1e-9)
+
+    def test_a_hull_that_bridges_a_gap_is_left_out(self):
+        self.write_table({0: 'wrist', 7: 'index_dip', 8: 'index_tip', 6: 'index_pip', 5: 'index_mcp', 4: 'thumb_tip'})
+        write_obj(os.path.join(self.set, 'P1.obj'), 1.0, FACES)
+        self.check('table')
+        write_obj(os.path.join(self.set, 'P1.obj'), 1.0, FACES[:2])  # two plates, 60 mm apart
+        self.assertIn('the hull does not stand for P1', self.run_program('table').stderr)
+
+    def test_manipnet(self):
+        """Hands of a wrist and straight fingers of 0.4, 0.3 and 0.2 dm; the tips are where bones end on average."""
+        bones = ''.join('JOINT %s_%s\n{\nOFFSET %g 0 0\nCHANNELS 3 Yrotation Xrotation Zrotation\n' % (finger, bone, length)
+                        + ('End Site\n{\nOFFSET 0 0 0\n}\n}\n}\n}\n' if bone == 'DIP' else '')
+                        for finger in ('THUMB', 'INDEX', 'MIDDLE', 'RING', 'PINKY') for bone, length in (('MCP', 0.4), ('PIP', 0.3), ('DIP', 0.2)))
+        tip = np.array([0.09 + 0.02 * 0.88, 0, 0])  # of the index, from the wrist [m]
+        wrists, up = self.touched - self.turn.apply(tip), Rotation.from_rotvec([-np.pi / 2, 0, 0])  # y up in the files
+
+        def motion(path, name, joints, places, turns, more):
+            with warnings.catch_warnings():
+                warnings.simplefilter('ignore')  # gimbal lock: one of the angles is arbitrary, the rotation is not
+                angles = (up * turns).as_euler('YXZ', degrees=True)
+            rows = np.column_stack([10 * up.apply(places), angles, np.zeros((FRAMES, more))])
+            text(path, 'HIERARCHY\nROOT %s\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Yrotation Xrotation Zrotation\n%s}\n'
+                 'MOTION\nFrames: %d\nFrame Time: 0.0333333\n' % (name, joints, FRAMES) + ''.join(' '.join('%.9f' % x for x in row) + '\n' for row in rows))
+        folder = os.path.join(self.set, 'cube1')
+        for side, apart in (('right', 0.0), ('left', 1.0)):
+            motion(os.path.join(folder, side + 'Hand.bvh'), 'WRIST', bones, wrists + apart, Rotation.from_quat([self.turn.as_quat()] * FRAMES), 45)
+        motion(os.path.join(folder, 'cube.bvh'), 'cube', 'End Site\n{\nOFFSET 0 0 0\n}\n', self.places, self.turns, 0)
+        write_obj(os.path.join(self.set, 'ObjectModel', 'Primitive', 'cube.obj'), 10, FACES)
+        self.check('manipnet', '--up', 'y')
 
     def at_wrist(self, pose):
         """Translations where these are the wrist's place."""

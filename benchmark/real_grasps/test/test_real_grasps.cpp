@@ -346,17 +346,55 @@ TEST(Arctic, AWindowIsLedFromWhereNoHandTouchesItsObject) {
 }
 
 TEST(Arctic, AHingeThatIsElsewhereIsNotWithin) {
-  const std::vector<WindowOutcome> outcomes{{{0.01, 0.01}, {0.1, 0.3}, {}}};
+  const std::vector<WindowOutcome> outcomes{{{0.01, 0.01}, {0.1, 0.3}, {}, {}}};
   EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02), 1.0);
   EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02, 0.2), 0.5);
 }
 
 TEST(Arctic, SharesAreOfAllFramesTogether) {
-  const std::vector<WindowOutcome> outcomes{{{0.01, 0.03, 0.06}, {}, {1.0}}, {{0.0}, {}, {2.0, 3.0}}};
+  const std::vector<WindowOutcome> outcomes{{{0.01, 0.03, 0.06}, {}, {1.0}, {}}, {{0.0}, {}, {2.0, 3.0}, {}}};
   EXPECT_DOUBLE_EQ(share_within(outcomes, 0.05), 0.75);
   EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02), 0.5);
   EXPECT_EQ(stayed(outcomes, 0.05), 1u);
   EXPECT_DOUBLE_EQ(force_p90(outcomes), 2.8);
+}
+
+/// A window of a capture, `within` of whose ten frames are near.
+WindowOutcome near_in(const std::string& capture, std::size_t within) {
+  WindowOutcome outcome;
+  outcome.labels.capture = capture;
+  for (std::size_t i = 0; i < 10; ++i) outcome.away.push_back(i < within ? 0.01 : 1.0);
+  return outcome;
+}
+
+// The frames of a capture depend on each other: only captures are drawn anew.
+TEST(Arctic, IntervalsAreOfCaptures) {
+  const std::vector<WindowOutcome> one_capture{near_in("a", 10), near_in("a", 0)};
+  const Interval none = share_interval(one_capture, 0.02);
+  EXPECT_DOUBLE_EQ(none.low, 0.5);
+  EXPECT_DOUBLE_EQ(none.high, 0.5);
+  const Interval of_two = share_interval({near_in("a", 10), near_in("b", 0)}, 0.02);
+  EXPECT_DOUBLE_EQ(of_two.low, 0.0);
+  EXPECT_DOUBLE_EQ(of_two.high, 1.0);
+}
+
+TEST(Arctic, TheSameWindowsAreComparedCaptureByCapture) {
+  const std::vector<WindowOutcome> hand{near_in("a", 10), near_in("b", 3)},
+      rigid{near_in("b", 1), near_in("a", 8)};
+  const Interval interval =
+      difference_interval(hand, rigid, 0.02);  // a fifth better in each, however they are drawn
+  EXPECT_NEAR(interval.low, 0.2, 1e-12);
+  EXPECT_NEAR(interval.high, 0.2, 1e-12);
+}
+
+TEST(Arctic, WindowsAreCountedByPersonAndObject) {
+  std::vector<WindowOutcome> outcomes{near_in("a", 10), near_in("b", 5), near_in("c", 0)};
+  outcomes[0].labels.person = outcomes[2].labels.person = "P1";
+  outcomes[1].labels.person = "P2";
+  const auto people = by_label(outcomes, &WindowLabels::person);
+  ASSERT_EQ(people.size(), 2u);
+  EXPECT_DOUBLE_EQ(share_within(people.at("P1"), 0.02), 0.5);
+  EXPECT_DOUBLE_EQ(share_within(people.at("P2"), 0.02), 0.5);
 }
 
 }  // namespace
