@@ -1,4 +1,4 @@
-# Messages, services and sliders, and what other catkin packages are told.
+# Messages, services and sliders, and the exports to other catkin packages.
 add_message_files(DIRECTORY msg)
 # leap_motion/Human of the Leap's driver in its four versions, and leap_motion_controller/Hand: an MD5 does not depend on the package's name.
 add_message_files(DIRECTORY msg/leap)

@@ -1,4 +1,4 @@
-# mr_hand_interaction::core and ::ros for those who use targets; what they are made of is what catkin found.
+# Imported targets mr_hand_interaction::core and ::ros, made from the libraries that catkin found.
 if(NOT TARGET mr_hand_interaction::core)
   find_package(Eigen3 3.3 REQUIRED NO_MODULE)
   foreach(library ${mr_hand_interaction_LIBRARIES})

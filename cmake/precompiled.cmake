@@ -1,13 +1,13 @@
-# Reads headers that most files of a target include once for all of them: half of a build is reading Eigen, ROS and
+# Compiles headers that most files of a target include once for all of them: half of a build is parsing Eigen, ROS and
 # googletest. Files include what they use all the same, and build with this off, too.
 set(precompiled_default ON)
 if(CMAKE_VERSION VERSION_LESS 3.16)
   set(precompiled_default OFF)
 endif()
-option(PRECOMPILED_HEADERS "Read headers that most files include once; needs CMake 3.16" ${precompiled_default})
+option(PRECOMPILED_HEADERS "Compile common headers once; needs CMake 3.16" ${precompiled_default})
 
-# precompile(TARGET [HEADER...]): a target of its own has the headers, and TARGET includes them by one flag for all its
-# files. CMake's flags for each file are in one list that every object depends on: a new file would rebuild all others.
+# precompile(TARGET [HEADER...]): a separate target compiles the headers, and TARGET includes them by one flag for all its files.
+# CMake's own flags are set for each file, in one list that every object depends on: a new file would rebuild all others.
 function(precompile target)
   if(NOT PRECOMPILED_HEADERS)
     return()
@@ -33,13 +33,17 @@ function(precompile target)
   precompiled_as(${target} ${target})
 endfunction()
 
-# For targets of the same options: what `from` has read.
+# precompiled_as(TARGET FROM): TARGET shares the precompiled headers of FROM; both need the same compile options.
 function(precompiled_as target from)
   if(PRECOMPILED_HEADERS)
     get_target_property(precompiled ${from} PRECOMPILED_AS)
     list(GET precompiled 0 owner)
     list(GET precompiled 1 header)
     add_dependencies(${target} ${owner})
+    get_target_property(position_independent ${owner} POSITION_INDEPENDENT_CODE)
+    if(position_independent)
+      target_compile_options(${target} PRIVATE -fPIC)  # also a program of its own: gcc refuses headers that differ in this
+    endif()
     set_property(TARGET ${target} APPEND_STRING PROPERTY COMPILE_FLAGS " -Winvalid-pch -include ${header}")
     get_target_property(sources ${target} SOURCES)
     list(FILTER sources EXCLUDE REGEX "TARGET_OBJECTS")

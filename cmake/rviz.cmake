@@ -1,4 +1,4 @@
-# What rviz loads, where rviz can be built against (Debian: librviz-dev): the display and the experimenter's panel.
+# Plugins of rviz: the display and the experimenter's panel. Built if rviz's headers are installed (Debian: librviz-dev).
 find_package(rviz QUIET)
 if(NOT rviz_FOUND)
   message(STATUS "rviz's development files not found (librviz-dev): no display and no training panel")

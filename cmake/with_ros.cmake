@@ -19,6 +19,7 @@ set(nodes hand_interaction_node hand_tracking_node interaction_node synthetic_ha
 foreach(node ${nodes})
   add_executable(${node} src/nodes/${node}.cpp)
   target_link_libraries(${node} ${PROJECT_NAME}_ros)
+  precompiled_as(${node} ${PROJECT_NAME}_ros)
 endforeach()
 
 install(TARGETS ${PROJECT_NAME}_core ${PROJECT_NAME}_ros
@@ -34,7 +35,7 @@ foreach(script ${scripts})
   install(PROGRAMS scripts/${script} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   file(REMOVE ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${script})  # of an earlier build
 endforeach()
-# What draws rviz on a virtual screen; `setup` is no program.
+# Programs that draw rviz on a virtual screen; `setup` is sourced by them.
 install(PROGRAMS scripts/film scripts/screenshot DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(FILES scripts/setup scripts/virtual_screen DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(PROGRAMS scripts/explain_pictures.py scripts/film.py scripts/rviz_stage.py scripts/screenshot.py scripts/watch_demo.py

@@ -1,4 +1,4 @@
-# What there is without ROS: replay of recordings in CSV, and a CMake package with the target ${PROJECT_NAME}::core.
+# The build without ROS: replay of CSV recordings, and a CMake package with the target ${PROJECT_NAME}::core.
 file(GLOB replay_library_sources src/record/*.cpp src/replay/*.cpp src/without_ros/*.cpp)
 list(FILTER replay_library_sources EXCLUDE REGEX "/src/replay/(bag|marker)_[a-z]*.cpp$")
 list(APPEND replay_library_sources src/ros/package_paths.cpp)

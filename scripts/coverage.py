@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What gcov has counted of the core: prints a table of its files, least covered first, and writes the lines that nothing
-has run. scripts/coverage starts it. gcov's own JSON, as gcovr 5.2 reads its text for many minutes, and not to its end."""
+"""Prints a table of the core's files with gcov's counts, least covered first, and writes the lines that no test has run.
+scripts/coverage starts it. It reads gcov's JSON: gcovr 5.2 takes many minutes for the text, and does not finish."""
 import argparse
 import collections
 import itertools
@@ -33,7 +33,7 @@ def main():
 
 
 def units(folder):
-    """What gcov says of each object file, as it says it."""
+    """Yields gcov's report of each object file, unchanged."""
     counts = sorted(os.path.join(place, name) for place, _, names in os.walk(os.path.abspath(folder)) for name in names
                     if name.endswith('.gcda'))
     if not counts:
@@ -54,7 +54,7 @@ def add(unit, counted):
         for line in file['lines']:
             number = line['line_number']
             lines[number] += line['count']
-            # Of a template, or what several files include, a line comes more than once.
+            # A line of a template, or of a header, occurs more than once.
             for place, branch in enumerate(b for b in line['branches'] if not b['throw']):
                 branches[number, place] += branch['count']
 

@@ -34,24 +34,22 @@ WHAT = {"grasp": "the grasp begins", "before_loss": "before it goes", "loss": "t
 
 def write_config(file):
     import yaml
-    from rviz_stage import view_file
-    with open(view_file("interaction"), encoding="utf-8") as source:
-        config = yaml.safe_load(source)
+    from rviz_stage import picture_view
+    config = picture_view("interaction", 2 * WIDTH, 2 * HEIGHT)
     manager = config["Visualization Manager"]
-    # Markers, as what is seen is moved before the camera.
+    # Markers, because the scene is moved in front of the camera.
     manager["Displays"] = [{"Class": "rviz/MarkerArray", "Enabled": True, "Value": True, "Marker Topic": "/markers",
                             "Name": "Hands and objects", "Queue Size": 10,
                             "Namespaces": {name: name in LAYERS for name in LAYERS + HIDDEN}}]
     eye = manager["Views"]["Current"]
     eye.update({"Yaw": 0.0, "Pitch": PITCH, "Distance": DISTANCE, "Focal Point": {"X": 0, "Y": 0, "Z": 0}})
-    config["Window Geometry"].update({"Width": 2 * WIDTH, "Height": 2 * HEIGHT})
     yaml.safe_dump(config, file)
     file.flush()
     return eye
 
 
 def from_yaw(yaw):
-    """Where a camera of that yaw is, seen from what it looks at."""
+    """Direction from the focus to a camera with that yaw."""
     return math.cos(yaw) * math.cos(PITCH), math.sin(yaw) * math.cos(PITCH), math.sin(PITCH)
 
 
@@ -77,7 +75,7 @@ def focus_of(moment):
 
 
 def placed(marker, moment, yaw):
-    """Where rviz's camera, which does not move, sees it as one of that yaw before the focus would."""
+    """Moves a pose so that rviz's fixed camera sees it as a camera with that yaw would."""
     focus, distance = focus_of(moment)
     c, s = math.cos(-yaw), math.sin(-yaw)
     pose = marker.pose

@@ -19,7 +19,7 @@ import rospy
 import yaml
 from mr_hand_interaction.msg import HandFrame, TrainingStatus
 
-from rviz_stage import POSES, STARTED, Stage, drawn, own_stage, view_file, wait_for_rviz
+from rviz_stage import POSES, STARTED, Stage, drawn, own_stage, picture_view, wait_for_rviz
 from screenshot import FONT
 from watch_demo import join_master
 
@@ -131,8 +131,8 @@ def record(scene, seconds, folder):
 
 
 def write_config(view, focus, size, file):
-    with open(view_file(view), encoding="utf-8") as source:
-        config = yaml.safe_load(source)
+    width, height = (2 * int(number) for number in size.split("x"))
+    config = picture_view(view, width, height)
     for display in config["Visualization Manager"]["Displays"]:
         if display["Name"] == "Hands and objects":
             display["Text"] = False
@@ -141,8 +141,6 @@ def write_config(view, focus, size, file):
         eye["Distance"] *= WIDER
     if focus:
         eye["Focal Point"], eye["Distance"] = focus
-    width, height = (2 * int(number) for number in size.split("x"))
-    config["Window Geometry"].update({"Width": width, "Height": height})
     yaml.safe_dump(config, file)
     file.flush()
     return eye, width / height

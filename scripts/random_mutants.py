@@ -67,7 +67,7 @@ def negated(line):
 
 
 def mutants_of(line, previous):
-    """What a line of code may become."""
+    """Mutations of a line of code."""
     code = line.split("//")[0].rstrip()
     if not code.strip() or code.strip().startswith(NO_CODE):
         return []

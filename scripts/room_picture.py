@@ -41,7 +41,7 @@ class Camera:
         return local @ self.turn.T
 
     def pixels(self, points):
-        """Where the camera sees points of world."""
+        """Pixels of points in world."""
         seen = (numpy.asarray(points) - self.place) @ self.turn @ self.matrix.T
         return seen[:, :2] / seen[:, 2:]
 
@@ -59,7 +59,7 @@ def table_top(u, v):
 
 
 def paint(picture, nearest, distance, inside, colours):
-    """Where a surface is nearer than what was painted before."""
+    """Mask of pixels where a surface is nearer than those painted before."""
     seen = inside & (distance > 0) & (distance < nearest)
     picture[seen] = numpy.broadcast_to(colours, picture.shape)[seen]
     nearest[seen] = distance[seen]

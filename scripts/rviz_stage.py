@@ -1,4 +1,4 @@
-"""Has rviz draw poses and markers picture by picture: each picture bears a mark, so that it is known when it has been drawn."""
+"""Lets rviz draw poses and markers picture by picture. A mark in each picture shows when it has been drawn."""
 import collections
 import contextlib
 import filecmp
@@ -12,6 +12,7 @@ import threading
 import time
 
 import rospy
+import yaml
 from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
 from mr_hand_interaction.msg import RenderedView, SceneDescription
@@ -36,10 +37,15 @@ def missing_tools():
     return sorted({package for program, package in PROGRAMS.items() if not shutil.which(program)})
 
 
-def view_file(name):
+def picture_view(name, width, height):
+    """A configuration of rviz/ for a window of this size without panels."""
     for folder in (os.path.join(HERE, "..", "rviz"), os.path.join(HERE, "..", "..", "share", "mr_hand_interaction", "rviz")):
         if os.path.exists(os.path.join(folder, name + ".rviz")):
-            return os.path.join(folder, name + ".rviz")
+            with open(os.path.join(folder, name + ".rviz"), encoding="utf-8") as source:
+                config = yaml.safe_load(source)
+            config["Panels"] = []
+            config["Window Geometry"].update({"Width": width, "Height": height, "Hide Left Dock": True, "Hide Right Dock": True})
+            return config
     raise RuntimeError("rviz/" + name + ".rviz is not found; allowed: a built or installed package")
 
 
@@ -103,7 +109,7 @@ def own_stage(name, width, height):
 
 
 class Stage:
-    """What rviz shows of some topics, as of a time, until the end of the block."""
+    """Messages of some topics that rviz shows at a time."""
 
     def __init__(self, topics):
         self.publishers = {topic: rospy.Publisher(topic, POSES.get(topic, MarkerArray), queue_size=100, latch=topic == "scene")
@@ -162,7 +168,7 @@ class Stage:
                 self.publishers[topic].publish(MarkerArray(list(markers.values())))
 
     def repeat(self):
-        """rviz takes hands away that nobody speaks of, also while a slow machine draws or takes a picture."""
+        """Sends hands again, because rviz removes hands without messages, also while a picture is taken."""
         while not self.over.wait(BETWEEN):
             if "rendered_view" in self.poses:
                 self.publishers["rendered_view"].publish(self.poses["rendered_view"])

@@ -102,9 +102,8 @@ def middle(demo):
 
 
 def write_config(options, focus, file):
-    from rviz_stage import view_file  # which imports this
-    with open(view_file("interaction"), encoding="utf-8") as source:
-        config = yaml.safe_load(source)
+    from rviz_stage import picture_view  # which imports this
+    config = picture_view("interaction", *(2 * int(number) for number in options.size.split("x")))
     manager = config["Visualization Manager"]
     manager["Views"]["Current"].update({"Yaw": options.view[0], "Pitch": options.view[1], "Distance": options.distance,
                                         "Focal Point": focus})
@@ -114,14 +113,12 @@ def write_config(options, focus, file):
         if display["Name"] == "Hands and objects":
             display.update({name.capitalize(): name not in options.hide for name in LAYERS if name != "Grid"})
             display.update({name.capitalize(): name in options.show for name in OFF_AT_FIRST})
-    width, height = (2 * int(number) for number in options.size.split("x"))
-    config["Window Geometry"].update({"Width": width, "Height": height})
     yaml.safe_dump(config, file)
     file.flush()
 
 
 def covers_screen(file):
-    """Whether rviz's window is there: its start-up picture stands on a black screen."""
+    """True once rviz's window is open. Its splash screen is on a black background."""
     corner = subprocess.run(["convert", file, "-crop", "1x1+2+2", "-depth", "8", "rgb:-"], stdout=subprocess.PIPE, check=True)
     return any(corner.stdout)
 
@@ -180,7 +177,7 @@ def stop_at_moment(demo, options, deadline):
 
 
 def text_shown(deadline):
-    """What the scene's text says. It hangs below the scene, where a picture from near by has no room for it."""
+    """Returns the scene's text, which is below the scene and outside of close pictures."""
     told = []
 
     def take(array):

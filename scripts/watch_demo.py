@@ -40,7 +40,7 @@ def turn_between(a, b):
 
 
 class Demo:
-    """What has been seen of it; `changed` is notified with every message."""
+    """State of a running demo, from its messages; `changed` is notified with each."""
 
     def __init__(self):
         self.changed = threading.Condition()
@@ -85,7 +85,7 @@ class Demo:
             self.still = bool(self.objects) and all(
                 thing.name in self.objects and self.objects[thing.name].pose == thing.pose for thing in message.objects)
             for thing in message.objects:
-                # Who comes late sees the middle of a run.
+                # A late subscriber sees the middle of a run.
                 if not thing.held and message.header.stamp >= self.run_began:
                     self.start.setdefault(thing.name, thing.pose)
                 self.objects[thing.name] = thing
@@ -143,7 +143,7 @@ def rviz_listens():
 
 
 def grab(file):
-    """What is on the screen."""
+    """Writes a picture of the screen."""
     subprocess.run(["import", "-silent", "-window", "root", file], check=True)
 
 

@@ -385,7 +385,7 @@ export class Drawing {
     if (!group) return;
     place(group, ...length([x, y, z]).toArray(), ...turn);
     group.visible = true;
-    group.held = held === 1;
+    group.held = held; // 1: by contact, 2: with grasp assist
   }
 
   frame([hands, contacts, objects]) {
@@ -421,7 +421,8 @@ export class Drawing {
   }
 
   get text() {
-    const held = this.objects.children.filter((group) => group.held).map((group) => group.name);
+    const held = this.objects.children.filter((group) => group.held)
+      .map((group) => group.name + (group.held === 2 ? ' (with grasp assist)' : ''));
     return `${this.title}  |  holding: ${held.join(', ') || 'nothing'}`;
   }
 }

@@ -117,7 +117,7 @@ def spans_of(times, looks):
 
 
 def grip_charts(thing, start, until, whole):
-    """Of an object: what fingers do; if `whole`, also its state, depths, margins and torque."""
+    """Charts of the fingers on an object; if `whole`, also of its state, depths, margins and torque."""
     charts = []
     if whole:
         rows = [('', spans_of(thing.time, [(STATE_COLOURS[state], state) for state in thing.state]))]

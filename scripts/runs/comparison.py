@@ -10,12 +10,12 @@ from study import program
 
 from .tables import LARGEST, read_table
 
-# What both runs must have alike; columns that came later are not compared.
+# The compared columns; columns that came later are not compared.
 MOTION = ('time', 'name', 'px', 'py', 'pz', 'qx', 'qy', 'qz', 'qw', 'vx', 'vy', 'vz', 'wx', 'wy', 'wz')
 TOLERANCE = (1e-9, 1e-9)  # m between centres of mass, rad between orientations
 
-# Of an object: the first frame that counts [s], its place there in the first run [m]; how far apart the two are there and
-# at most from there on [m, rad]; and why, where it is not by its pose.
+# Divergence of an object: its first frame [s], the position there in the first run [m], the differences there and their maxima
+# afterwards [m, rad]; and the reason if it is not the pose.
 Parting = collections.namedtuple('Parting', 'object time place distance angle max_distance max_angle why')
 # `near_misses`: within the tolerance, though not the same to the last digit. `same_end`: the states in which the runs end,
 # contacts and filters too; None where a run does not have its hash.
@@ -47,7 +47,7 @@ class Pair:
                        numpy.fmax.reduce(self.distance[i:]), numpy.fmax.reduce(self.angle[i:]), '')
 
     def end(self):
-        """Where one of them has a frame that the other has not, or None."""
+        """Divergence if one run has a frame that the other lacks, else None."""
         i, ends = self.count, [self.count == len(table) for table in (self.first, self.second)]
         if all(ends):
             return None
@@ -78,7 +78,7 @@ def paths_of(folder):
 
 
 def end_hash(folder):
-    """Of the state in which a run ends, if its summary.json has it."""
+    """Hash of a run's final state, if its summary.json has it."""
     try:
         return json.loads(program.read_text(os.path.join(folder, 'summary.json'), LARGEST))['state_hash']
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
@@ -86,7 +86,7 @@ def end_hash(folder):
 
 
 def compare(first, second, tolerance=TOLERANCE):
-    """Of the objects.csv, and the state_hash in summary.json, of two folders. Raises RunError."""
+    """Compares objects.csv, and state_hash in summary.json, of two folders. Raises RunError."""
     a, b = paths_of(first), paths_of(second)
     names, partings, near_misses = sorted(set(a) | set(b)), [], []
     for name in names:

@@ -1,4 +1,4 @@
-"""What hands do to an object in each frame: finger by finger, and all contacts of a frame together."""
+"""Forces of hands on an object in each frame: for each finger, and for all contacts together."""
 
 import collections
 
@@ -13,16 +13,16 @@ PATCH_TORQUE = 2.0 / 3.0  # lever of a round patch under even pressure, over its
 NO_LOAD = 1e9  # times the load, where there is none
 SCALE = 0.03  # m; length that weighs rotation against translation
 ITERATIONS = 150  # few gains after some dozens
-SHARPER, SHARPEST = 0.9, 1e-6  # regularisation of what hardly moves: factor per iteration, least
+SHARPER, SHARPEST = 0.9, 1e-6  # regularisation of directions that hardly move: factor per iteration, minimum
 MIN_LOAD = 1e-9  # N
 MIN_SPAN = 1e-3  # m, between thumb and fingers, for a line through the grip
 
-# What a finger, or the palm, does to an object in a frame. Forces in N, depth in m; outward: unit, object to finger.
+# Contact of a finger or the palm with an object in a frame. Forces in N, depth in m; outward: unit vector, object to finger.
 FingerContact = collections.namedtuple('FingerContact', 'hand_id finger normal tangential limit depth slips outward face')
 
 
 def utilisation(touch):
-    """Of the friction limit."""
+    """Friction utilisation: tangential force over the friction limit."""
     return touch.tangential / touch.limit if touch.limit > 0.0 else 0.0
 
 
@@ -83,7 +83,7 @@ def torques(contacts, rows, count):
 
 
 def margins(contacts, rows, position):
-    """What friction could bear beyond its load, of a straight pull [N]; and how often it could bear load and torque."""
+    """Friction margin for a straight pull [N]; and the largest factor on load and torque that friction can carry."""
     count = len(position)
     normal = vectors(contacts, ('nx', 'ny', 'nz'))
     along = vectors(contacts, ('fx', 'fy', 'fz')) + contacts['normal_force'].to_numpy()[:, None] * normal

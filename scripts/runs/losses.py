@@ -27,7 +27,7 @@ Loss = collections.namedtuple(
     'grasp_end frame')
 # An object that was touched, never held, and left faster than it came.
 PassingTouch = collections.namedtuple('PassingTouch', 'object hand_id start until fingers speed')
-# Where a picture shows most.
+# A moment of which a picture is drawn.
 Moment = collections.namedtuple('Moment', 'what object time loss place palm across radius frame')
 
 
@@ -200,7 +200,7 @@ def _leaves_text(stay):
 
 
 def _faces_text(stay):
-    """Of the frame, among the last ones, in which most fingers touched."""
+    """Faces in the frame, among the last ones, in which most fingers touched."""
     most = []
     for i in range(stay.window, stay.touched + 1):
         touches = stay.touches(i)

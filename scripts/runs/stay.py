@@ -1,4 +1,4 @@
-"""What an object's stay with a hand shows: the evidence from which losses.py tells why it ended."""
+"""An object's stay in a hand: the evidence from which losses.py derives why it ended."""
 
 import collections
 import math
@@ -34,7 +34,7 @@ class Stay:
         return self.thing.time[i]
 
     def touches(self, i):
-        """Of this hand."""
+        """Contacts of this hand in a sample."""
         return [touch for touch in self.thing.touches[i] if touch.hand_id == self.hand_id]
 
 
@@ -78,7 +78,7 @@ def _impact_by(stay, other, gravity):
 
 
 def opening_of(stay):
-    """Of a hand that had begun to open as it touched last, and went on."""
+    """Opening of a hand that had begun to open before the last touch, and continued."""
     hand, used = stay.hand, []
     for i in range(stay.window, stay.touched + 1):
         used += [touch.finger for touch in stay.touches(i) if touch.finger not in used]
@@ -147,7 +147,7 @@ def load_of(stay, gravity, start):
 
 
 def _acceleration(hand, time):
-    """Of the palm, over twice SPAN [m/s^2]; 0 where that is not seen."""
+    """Acceleration of the palm over twice SPAN [m/s^2]; 0 without samples."""
     before = numpy.flatnonzero(hand.time <= time - SPAN + 1e-6)
     at, after = (numpy.flatnonzero(hand.time >= start - 1e-6) for start in (time, time + SPAN))
     if not (len(before) and len(at) and len(after)):

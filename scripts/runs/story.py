@@ -1,4 +1,4 @@
-"""What happened in a run, as its tables have it: objects with their samples, hands, joints and events."""
+"""A run, from its tables: objects with their samples, hands, joints and events."""
 
 import collections
 

@@ -27,7 +27,7 @@ COLUMNS = {
 TEXTS = {'name', 'object', 'kind', 'joint', 'joint_kind'}
 WHOLE = {'frame', 'stamp', 'hand_id', 'side', 'finger', 'bone', 'rendered', 'level', 'held', 'assisted', 'touching', 'slipping',
          'lost'}
-# What is read of summary.json, and of its live_run if it has one.
+# Keys that are read from summary.json, and from its live_run if it has one.
 NUMBER = (int, float)
 SUMMARY = {'input': str, 'scene': str, 'frames': int, 'simulated_seconds': NUMBER, 'gravity': list, 'contact_model': str,
            'version': str, 'rejected': dict, 'parameters': dict, 'not_known': list, 'state_hash': str}
@@ -152,7 +152,7 @@ class Run:
 
     @property
     def phalanges(self):
-        """Of the tracked hands."""
+        """Phalanges of the tracked hands."""
         if self._phalanges is None:
             hands = read_table(self.folder, 'hands.csv')
             self._check_frames('hands.csv', hands)

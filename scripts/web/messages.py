@@ -1,4 +1,4 @@
-"""What a browser sends: hands in binary, all else in JSON. Knows nothing of ROS."""
+"""Messages from a browser: hands in binary, all others in JSON. Independent of ROS."""
 
 import json
 import math
@@ -17,7 +17,7 @@ MAX_RADIUS = 0.1  # [m] of a joint
 
 
 class Refusal(Exception):
-    """What is not taken, in one line that says what is allowed."""
+    """Error of a refused message: one line that says what is allowed."""
 
 
 def read_hands(data):

@@ -1,4 +1,4 @@
-"""What viewers draw, from the messages of ROS: shapes once, and for each frame poses in whole numbers."""
+"""Messages to browsers, from those of ROS: shapes once, and poses for each frame, in integers."""
 
 import array
 import base64
@@ -144,10 +144,10 @@ class Picture:
 
     def take_objects(self, message):
         self._version += 1
-        objects = dict(self._objects)  # who reads meanwhile goes through the one before
+        objects = dict(self._objects)  # a copy: another thread may be reading the old one
         for state in message.objects:
             id_ = self._id(state.name)
-            entry = [id_, int(state.held), *_pose(state.pose)]
+            entry = [id_, int(state.held) + int(state.held and state.assisted), *_pose(state.pose)]
             if objects.get(id_, (0, None))[1] != entry:
                 objects[id_] = self._version, entry
         self._objects = objects

@@ -29,7 +29,7 @@ HEADERS = {'Cache-Control': 'no-store', 'Referrer-Policy': 'no-referrer', 'X-Con
 
 
 class Port:
-    """What the server needs of ROS."""
+    """Interface of the server to ROS."""
 
     def now(self):
         """[s]"""
@@ -80,7 +80,7 @@ class Refusals:
 
 
 class OneLine(logging.Handler):
-    """What aiohttp logs of requests that it cannot read, without its tracebacks."""
+    """Logs requests that aiohttp cannot read, without tracebacks."""
 
     def __init__(self, refusals):
         super().__init__(logging.WARNING)
@@ -102,8 +102,8 @@ class TooMany(asyncio.Protocol):
 
 
 class Mount:
-    """Where a person's space is in world. Each placing has a frame of its own, so that no message of hands can be taken
-    with the place before or after it, live or in a replay."""
+    """Pose of a person's space in world. Each placing has its own frame, so that hands are never combined with an earlier or
+    later place, live or in a replay."""
 
     def __init__(self, person):
         self._person, self._count = person, 0
@@ -256,7 +256,7 @@ class Door:
                 return
 
     def _take_hands(self, viewer, data):
-        """Of several that have come at once only the newest is published: none waits behind another."""
+        """Publishes only the newest of several messages that arrived together: none waits behind another."""
         hands = messages.read_hands(data)
         if viewer.hands is None:
             asyncio.get_running_loop().call_soon(self._publish_hands, viewer)

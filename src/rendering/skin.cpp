@@ -130,7 +130,7 @@ class Poser {
     const Capsule& capsule = hand_.capsules[i];
     const Matrix3 unbent =
         rig_[static_cast<std::size_t>(parent)].axes * rest_axes(parent).transpose() * rest_axes(index);
-    const Quaternion turned = Quaternion::FromTwoVectors(unbent.col(0), capsule.end - capsule.start);
+    const Quaternion turned = rotation_between(unbent.col(0), capsule.end - capsule.start);
     rig_[i] = bone_along(capsule, turned * unbent);
     if (bend < 0) return;
     SkinBone& half = rig_[static_cast<std::size_t>(bend)];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "../math/rotation.h"
 #include "../simulation/contact_phase.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
@@ -40,7 +41,7 @@ std_msgs::ColorRGBA friction_color(FrictionState state, const PictureStyle& styl
 }
 
 Pose on_surface(const Vector3& point, const Vector3& normal) {
-  return {point + kLift * normal, Quaternion::FromTwoVectors(Vector3::UnitZ(), normal)};
+  return {point + kLift * normal, rotation_between(Vector3::UnitZ(), normal)};
 }
 
 /// Rings of one colour, set at each vertex too; rviz would otherwise light them and leave their sides black.
@@ -57,23 +58,33 @@ void add_rings(const std::vector<Contact>& contacts, FrictionState state, const 
   if (rings) rings->colors.resize(rings->points.size(), friction_color(state, style));
 }
 
-void add_force(const Contact& contact, const PictureStyle& style, int id, const MarkerLayer& arrows,
-               const MarkerLayer& numbers) {
-  const double newtons = contact.force.norm();
-  if (newtons < style.least_force) return;
-  const double length = kMaxLength * newtons / (newtons + kHalfLengthForce);
-  if (length < kMinLength) return;
-  const Vector3 direction = contact.force / newtons;
-  const Vector3 end = contact.point - (2.0 * contact.radius + kGap) * direction;
-  const Vector3 begin = end - length * direction;
-  add_arrow({begin, end, 0.00175, 0.0045, std::min(0.014, 0.5 * length)}, style.forces, id, arrows);
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f N", newtons);
-  numbers
-      .add(id, Marker::TEXT_VIEW_FACING, {Vector3(begin - kLetters * direction), Quaternion::Identity()},
-           Vector3::Constant(kLetters), style.forces)
-      .text = text;
-}
+/// Adds a force's arrow, and its number at the arrow's outer end. The inner end is `distance` from `place`:
+/// against the force, which then pushes (contacts), or along it, which then pulls (grasp assist) [m].
+struct ForceMarkers {
+  const PictureStyle& style;
+  const MarkerLayer &arrows, &numbers;
+  int id = 0;
+
+  void add(const Vector3& force, const Vector3& place, double distance, bool pulls) {
+    const int this_id = id++;
+    const double newtons = force.norm();
+    if (newtons < style.least_force) return;
+    const double length = kMaxLength * newtons / (newtons + kHalfLengthForce);
+    if (length < kMinLength) return;
+    const Vector3 outwards = (pulls ? 1.0 : -1.0) / newtons * force;
+    const Vector3 inner = place + distance * outwards, outer = inner + length * outwards;
+    const std_msgs::ColorRGBA& paint = pulls ? style.assist : style.forces;
+    add_arrow({pulls ? inner : outer, pulls ? outer : inner, 0.00175, 0.0045, std::min(0.014, 0.5 * length)},
+              paint, this_id, arrows);
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f N", newtons);
+    numbers
+        .add(this_id, Marker::TEXT_VIEW_FACING,
+             {Vector3(outer + kLetters * outwards), Quaternion::Identity()}, Vector3::Constant(kLetters),
+             paint)
+        .text = text;
+  }
+};
 
 /// Blue to orange by way of white, which colour-blind people can distinguish.
 std_msgs::ColorRGBA share_color(double share) {
@@ -96,19 +107,23 @@ void add_shares(const Scene& scene, const FrameResult& result, const MarkerLayer
 
 }  // namespace
 
-void add_contacts(const Scene& scene, const FrameResult& result, const PictureStyle& style,
-                  const MarkerLayers& layers) {
-  if (result.contacts.empty()) return;
-  const MarkerLayer dots = layers.layer("contacts"), friction = layers.layer("friction"),
-                    arrows = layers.layer("forces"), numbers = layers.layer("newtons"),
-                    shares = layers.layer("share");
-  Marker& points = dots.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(kPointSize), style.contacts);
-  for (const Contact& contact : result.contacts) points.points.push_back(to_message(contact.point));
-  for (int state = 0; state < kFrictionStates; ++state)
-    add_rings(result.contacts, static_cast<FrictionState>(state), style, friction);
-  add_shares(scene, result, shares);
-  int id = 0;
-  for (const Contact& contact : result.contacts) add_force(contact, style, id++, arrows, numbers);
+void add_contacts(const Scene& scene, const FrameResult& result, const SimulationState& state,
+                  const PictureStyle& style, const MarkerLayers& layers) {
+  if (!result.contacts.empty()) {
+    Marker& points = layers.layer("contacts")
+                         .add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(kPointSize), style.contacts);
+    for (const Contact& contact : result.contacts) points.points.push_back(to_message(contact.point));
+    for (int kind = 0; kind < kFrictionStates; ++kind)
+      add_rings(result.contacts, static_cast<FrictionState>(kind), style, layers.layer("friction"));
+    add_shares(scene, result, layers.layer("share"));
+  }
+  const MarkerLayer arrows = layers.layer("forces"), numbers = layers.layer("newtons");
+  ForceMarkers forces{style, arrows, numbers};
+  for (const Contact& contact : result.contacts)
+    forces.add(contact.force, contact.point, 2.0 * contact.radius + kGap, false);
+  for (const GraspSupport& assist : result.assists)
+    forces.add(assist.force, state.bodies[assist.body].pose.position,
+               scene.bodies[assist.body].bounding_radius, true);
 }
 
 /// An impact that spans several frames gets one ring.

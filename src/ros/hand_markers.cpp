@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "../math/rotation.h"
 #include "../rendering/skin.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
@@ -165,7 +166,7 @@ void HandMarkers::add_ghost(const Hand& rendered, const Hand& tracked, const Pic
 namespace {
 
 Pose along(const Vector3& start, const Vector3& end) {
-  return {0.5 * (start + end), Quaternion::FromTwoVectors(Vector3::UnitZ(), end - start)};
+  return {0.5 * (start + end), rotation_between(Vector3::UnitZ(), end - start)};
 }
 
 void add_bone(const Capsule& bone, bool with_start, const HandStyle& style, const std_msgs::ColorRGBA& skin,

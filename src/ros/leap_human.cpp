@@ -125,11 +125,12 @@ template <class Human>
 LeapFrame frame_of(std::vector<std::uint8_t>& bytes) {
   const auto human = deserialised<Human>("leap_motion/Human", bytes);
   LeapFrame frame = frame_with(human.header);
-  for (const auto& [hand, side] :
-       {std::make_pair(&human.right_hand, Side::right), {&human.left_hand, Side::left}}) {
-    HandJoints joints = joints_of(*hand, side);
-    if (hand->is_present) frame.joints.hands.push_back(std::move(joints));
-  }
+  const auto take = [&frame](const auto& hand, Side side) {
+    HandJoints joints = joints_of(hand, side);
+    if (hand.is_present) frame.joints.hands.push_back(std::move(joints));
+  };
+  take(human.right_hand, Side::right);
+  take(human.left_hand, Side::left);
   return frame;
 }
 

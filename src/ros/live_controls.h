@@ -25,6 +25,7 @@
 #include <utility>
 #include <vector>
 
+#include "../math/rotation.h"
 #include "../text/text.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
@@ -167,7 +168,7 @@ class Placing {
 
   static InteractiveMarkerControl control(const char* name, const Vector3& axis, std::uint8_t mode) {
     InteractiveMarkerControl control;
-    const Quaternion turn = Quaternion::FromTwoVectors(Vector3::UnitX(), axis);
+    const Quaternion turn = rotation_between(Vector3::UnitX(), axis);
     control.name = name;
     control.interaction_mode = mode;
     control.orientation = to_message(Pose{Vector3::Zero(), turn}).orientation;

@@ -129,10 +129,10 @@ visualization_msgs::Marker& add_arrow(const Arrow& arrow, const std_msgs::ColorR
 
 /// Contacts of hands with bodies. `contacts`: a dot at each; `friction`: a ring on the surface around it,
 /// green while sticking, yellow while slipping; `forces`: an arrow behind the finger, whose length grows with
-/// the force; `newtons`: the force as a number, at the arrow's end; `share`: a ball coloured by friction
-/// utilisation, from blue (none) to orange (full).
-void add_contacts(const Scene& scene, const FrameResult& result, const PictureStyle& style,
-                  const MarkerLayers& layers);
+/// the force, and one from an object along the force of grasp assist on it; `newtons`: the force as a number,
+/// at the arrow's end; `share`: a ball coloured by friction utilisation, from blue (none) to orange (full).
+void add_contacts(const Scene& scene, const FrameResult& result, const SimulationState& state,
+                  const PictureStyle& style, const MarkerLayers& layers);
 
 /// A flat ring about z, in the marker's own frame, from `begin` to `end` of a full turn, clockwise seen from
 /// z, starting at x.

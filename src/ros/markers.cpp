@@ -9,6 +9,7 @@
 
 #include "../math/rotation.h"
 #include "../rendering/skin.h"
+#include "../simulation/contact_phase.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
@@ -28,13 +29,12 @@ Vector3 below(const Scene& scene) {
   return place - kClearance * Vector3::UnitZ();
 }
 
-std::string held_by_hands(const Scene& scene, const SimulationState& state) {
+std::string held_by_hands(const Scene& scene, const FrameResult& result, const SimulationState& state) {
   std::string held;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (!is_held(i, state)) continue;
-    const bool assisted = std::any_of(state.grips.begin(), state.grips.end(),
-                                      [i](const Grip& grip) { return grip.active && grip.body == i; });
-    held += (held.empty() ? "" : ", ") + scene.bodies[i].name + (assisted ? " (with grasp assist)" : "");
+    held += (held.empty() ? "" : ", ") + scene.bodies[i].name +
+            (assist_force(i, result) ? " (with grasp assist)" : "");
   }
   return "holding: " + (held.empty() ? "nothing" : held);
 }
@@ -302,12 +302,13 @@ void Markers::update(const FrameResult& result, const SimulationState& state, co
   if (std::exchange(cleared_, false)) add_deleting(Marker::DELETEALL, {}, header, array);
   const MarkerLayers layers{array, header};
   hands_->add(result, state, style_, layers);
-  add_contacts(scene_, result, style_, layers);
+  add_contacts(scene_, result, state, style_, layers);
   impacts_->add(header.stamp, style_, layers.layer("impacts"));
   delete_gone(header, array);
   bodies_->add(state, result.contacts, all, layers);
   shadows_->add(state, result, all, layers.layer("shadows", kForEver));
-  std::string text = held_by_hands(scene_, state) + "  |  " + caption_ + motion_of_operators(scene_, state);
+  std::string text =
+      held_by_hands(scene_, result, state) + "  |  " + caption_ + motion_of_operators(scene_, state);
   if (!all && text == text_) return;
   text_ = std::move(text);
   layers.layer("text", kForEver)

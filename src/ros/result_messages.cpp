@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "../math/rotation.h"
 #include "../scene/shape_kinds.h"
 #include "../simulation/contact_phase.h"
 #include "mr_hand_interaction/interaction.h"
@@ -80,7 +81,7 @@ void add_phalanges(int slot, const Scene& scene, const std::vector<Contact>& con
 }
 
 geometry_msgs::Pose joint_message(const Vector3& position, const Vector3& along) {
-  return to_message(Pose{position, Quaternion::FromTwoVectors(Vector3::UnitX(), along)});
+  return to_message(Pose{position, rotation_between(Vector3::UnitX(), along)});
 }
 
 geometry_msgs::Pose missing_joint() {

@@ -122,6 +122,7 @@ class SceneView {
     return from_message(frame).hands;
   }
   void take_objects(const std::vector<mr_hand_interaction::ObjectState>& objects) {
+    result_.assists.clear();
     for (const auto& object : objects) {
       const auto index = find_body(scene_, object.name);
       if (!index) continue;
@@ -131,6 +132,8 @@ class SceneView {
       state_.bodies[i].linear_momentum = from_message(object.twist.linear);
       state_.bodies[i].angular_momentum = from_message(object.twist.angular);
       state_.interactions[i].level = object.held ? InteractionLevel::grasp : InteractionLevel::none;
+      if (object.assisted)
+        result_.assists.push_back({0, static_cast<std::uint16_t>(i), from_message(object.assist_force)});
     }
   }
   void take_contacts(const std::vector<mr_hand_interaction::Contact>& contacts) {

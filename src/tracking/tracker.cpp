@@ -292,7 +292,7 @@ Hand slowed(const Hand& before, const Hand& tracked, double speed, double elapse
       const Capsule& last = before.capsules[c];
       if (capsule.radius <= 0.0 || last.radius <= 0.0) continue;
       const Vector3 is = capsule.end - capsule.start, was = palm * (last.end - last.start);
-      const Quaternion turn = Quaternion::FromTwoVectors(was, is);
+      const Quaternion turn = rotation_between(was, is);
       const double angle = 2.0 * std::acos(std::min(1.0, std::abs(turn.w())));
       capsule.start += moved;
       if (angle > speed * elapsed && was.norm() > 0.0) {

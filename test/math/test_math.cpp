@@ -3,6 +3,7 @@
 #include "math/duration_histogram.h"
 #include "math/minimum_jerk.h"
 #include "math/registration.h"
+#include "math/rotation.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/synthetic/random.h"
 
@@ -36,6 +37,19 @@ TEST(Pose, an_inverse_takes_back_what_it_is_the_inverse_of) {
     EXPECT_LT((pose.to_local(pose * point) - point).norm(), kRounding);
     EXPECT_LT((pose.inverse() * (pose * point) - point).norm(), kRounding);
     EXPECT_LT((pose * (pose.inverse() * point) - point).norm(), kRounding);
+  }
+}
+
+TEST(RotationBetween, is_the_shortest_from_one_direction_to_the_other_also_if_they_are_opposite) {
+  Random random(4);
+  for (int i = 0; i < 100; ++i) {
+    const Vector3 from = random.gaussian_vector(1.0), to = i % 10 ? random.gaussian_vector(1.0) : -2.0 * from;
+    const Quaternion turn = rotation_between(from, to);
+    EXPECT_NEAR(turn.norm(), 1.0, kRounding);
+    EXPECT_LT((turn * from.normalized() - to.normalized()).norm(),
+              1e-6);  // opposite up to 1e-12 in the cosine
+    EXPECT_NEAR(rotation_vector(turn).norm(),
+                std::acos(std::max(-1.0, from.normalized().dot(to.normalized()))), 1e-6);
   }
 }
 

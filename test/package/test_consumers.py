@@ -1,5 +1,6 @@
 """The package as others build with it: outside of its tree, by its targets, and without ROS. With MR_HAND_CORE_BUILD=1
 the core is built, tested and installed without ROS too, which takes minutes."""
+import glob
 import os
 import re
 import subprocess
@@ -49,6 +50,26 @@ class Consumers(unittest.TestCase):
         for target in 'mr_hand_interaction_core', 'replay', 'test_laws':
             self.assertIn(target, targets)
         self.assertNotIn('interaction_node', targets)
+
+    def test_names_from_before_the_first_release_compile_and_are_deprecated(self):
+        headers = []
+        for path in glob.glob(os.path.join(REPOSITORY, 'include', '**', '*.h'), recursive=True):
+            with open(path, encoding='utf-8') as file:
+                if '// Deprecated' in file.read():
+                    headers.append(os.path.relpath(path, os.path.join(REPOSITORY, 'include')))
+        self.assertEqual(len(headers), 10)
+        types = ('HandPairs', 'JointGaps', 'SessionSetup', 'SessionFolder', 'Material', 'UsageError', 'JointState', 'HandOffset',
+                 'TrackingNoise', 'FilterMemory')
+        code = ''.join('#include "%s"\n' % header for header in sorted(headers))
+        code += '#include "mr_hand_interaction/response/grip.h"\nnamespace mrhi {\n'
+        code += ''.join('using Old%s = %s;\n' % (name, name) for name in types)
+        code += ('double aperture_of(const Grip& grip, const Hand& hand) { return opening(grip, hand); }\n'
+                 'auto leaves(const Box& box) { return box.way_out(Vector3::Zero(), Vector3::UnitX()); }\n}\n')
+        eigen = run('pkg-config', '--cflags', 'eigen3').split()
+        said = run('g++', '-std=c++17', '-fsyntax-only', '-I' + os.path.join(REPOSITORY, 'include'), *eigen, '-x', 'c++', '-',
+                   input=code)
+        self.assertIn('use aperture', said)
+        self.assertIn('use exit_distance', said)
 
     def test_a_new_source_file_compiles_alone_beside_precompiled_headers(self):
         def write(name, text):

@@ -50,6 +50,22 @@ TEST(ContactMarkers, an_arrow_tells_1_N_from_5_N_and_numbers_stand_at_its_end) {
   EXPECT_GE(lengths[1], 2.0 * lengths[0]);
 }
 
+TEST(ContactMarkers, an_arrow_of_its_own_colour_pulls_where_grasp_assist_supports_an_object) {
+  Shown shown;
+  shown.state.bodies[0].pose.position = {0, 0, 0.5};
+  const double radius = shown.scene.bodies[0].bounding_radius;
+  shown.result.assists = {{0, 0, {0, 0, 1.5}}};
+  shown.update();
+  const Marker& arrow = shown.first("forces");
+  EXPECT_EQ(arrow.color, PictureStyle().assist);
+  const Ends ends(arrow);
+  EXPECT_NEAR(ends.tip, 0.5 + radius, 1e-12);  // Ends is of an arrow that points down
+  EXPECT_GT(ends.length(), 0.03);
+  EXPECT_EQ(shown.first("newtons").text, "1.5 N");
+  shown.result.assists = {{0, 0, {0, 0, 0.01}}};
+  EXPECT_EQ(shown.update()["forces"], 0);  // too small to see
+}
+
 // rviz's own arrows are black where its light does not reach: from behind a hand that is all that is seen.
 TEST(ContactMarkers, arrows_are_bright_from_every_side_and_closed) {
   for (const Vector3& force : {Vector3(3, 0, 0), Vector3(-1, 2, 0.5), Vector3(0, 0, -4)}) {

@@ -18,5 +18,11 @@ TEST(RvizConfigurations, the_catch_is_drawn_as_all_else_and_seen_from_elsewhere)
   EXPECT_EQ(without_view("catch"), without_view("interaction"));
 }
 
+TEST(RvizConfigurations, the_list_of_layers_is_open) {
+  const YAML::Node window = YAML::LoadFile("rviz/interaction.rviz")["Window Geometry"];
+  EXPECT_FALSE(window["Hide Left Dock"].as<bool>());
+  EXPECT_FALSE(window["Displays"]["collapsed"].as<bool>());
+}
+
 }  // namespace
 }  // namespace mrhi

@@ -67,6 +67,7 @@ TEST(SceneView, what_is_drawn_from_messages_is_what_the_node_draws) {
     rendered.touching[static_cast<std::size_t>(capsule)] = true;
     rendered.pressed[static_cast<std::size_t>(capsule)] = {2.0, contact.point};
   }
+  shown.result.assists = {{0, 0, {0.0, 0.0, 1.5}}};
   shown.update();
 
   std_msgs::Header header;
@@ -89,7 +90,7 @@ TEST(SceneView, what_is_drawn_from_messages_is_what_the_node_draws) {
   }
   const Marker& text = there.at({"text", 0});
   EXPECT_EQ(text.text, here.at({"text", 0}).text);
-  EXPECT_NE(text.text.find("holding: object"), std::string::npos) << text.text;
+  EXPECT_NE(text.text.find("holding: object (with grasp assist)"), std::string::npos) << text.text;
   std::set<std::string> layers;
   for (const auto& [key, marker] : there) layers.insert(key.first);
   EXPECT_EQ(layers,

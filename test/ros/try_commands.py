@@ -115,6 +115,16 @@ class Tries:
             assert status == 0, output
         return sorted(os.path.dirname(file) for file in glob.glob(self.study + "/**/trials.csv", recursive=True))
 
+    def replayed(self):
+        """A folder that replay has written."""
+        folder = os.path.join(self.user.folder, "replayed")
+        if not os.path.isdir(folder):
+            bag = os.path.join(self.user.folder, "hands.bag")
+            status, output = self.user.run(["rosrun", NAME, "replay", "--scene", "cube", "--input", bag, "--output", folder],
+                                           timeout=TIME_LIMIT)
+            assert status == 0, output
+        return folder
+
     def filled_in(self, words):
         """With what stands for the user's own."""
         session = self.sessions()[0] if set(words) & {"SESSION", "SESSION_DIR"} or "ask_ratings" in words else ""
@@ -122,6 +132,9 @@ class Tries:
                   "PILOT": self.study, "study": self.study, "fresh": self.study}
         if set(words) & {"SESSIONS", "DIR...", "PILOT", "study", "fresh"}:
             self.sessions()
+        places["HZ"] = "50"
+        if "FOLDER" in words:
+            places["FOLDER"] = self.replayed()
         filled = [places.get(word, word) for word in words]
         return [session if re.search(r"/training/P07_implicit", word) else word for word in filled]
 

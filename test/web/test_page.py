@@ -87,6 +87,10 @@ class PageTest(unittest.TestCase):
         self.door.picture.take_training(types.SimpleNamespace(markers=list(training)))
         self.door.changed()
 
+    def show_objects(self, *states):
+        self.door.picture.take_objects(types.SimpleNamespace(objects=[types.SimpleNamespace(**state) for state in states]))
+        self.door.changed()
+
     def wait(self, holds, what):
         end = time.monotonic() + LONGEST
         while not holds():
@@ -123,10 +127,14 @@ class PageTest(unittest.TestCase):
             self.wait(lambda: self.door.port.taken[-1][4] == [], 'the end of the hands')
             self.wait(lambda: self.headset.run('return !document.getElementById("%s").hidden' % mode), 'the page')
 
-    def test_all_kinds_of_marks_are_drawn(self):
+    def test_all_kinds_of_marks_are_drawn_and_the_text_says_what_is_held(self):
         def is_cube(r, g, b):
             return r > 90 and 0.5 * r < g < 0.85 * r and b < 0.2 * r
         self.wait(lambda: self.share(is_cube) > 0.02, 'a box seen on the page')
+        pose = types.SimpleNamespace(position=point(z=0.2), orientation=point())
+        for assisted, held in ((False, 'holding: cube'), (True, 'holding: cube (with grasp assist)')):
+            self.show_objects(dict(name='cube', held=True, assisted=assisted, pose=pose))
+            self.wait(lambda held=held: self.headset.run('return page.drawing.text').endswith(held), held)
         self.show(scene(*range(len(SIZES))), training=SHAPES)
         self.wait(lambda: self.headset.run('return page.drawing.objects.children[0].children.length') == len(SIZES), 'shapes')
         self.wait(lambda: self.headset.run('return page.drawing.training.children.length') in (0, len(SHAPES)), 'training')
@@ -146,10 +154,8 @@ class PageTest(unittest.TestCase):
     def move_operators(self, **places):
         """Each with the frame of its hands at x, 0.4 m before its centre of mass, turned by a right angle about z."""
         half = math.sqrt(0.5)
-        self.door.picture.take_objects(types.SimpleNamespace(objects=[
-            types.SimpleNamespace(name=name, held=False, pose=types.SimpleNamespace(
-                position=point(x + 0.4), orientation=point(z=half, w=half))) for name, x in places.items()]))
-        self.door.changed()
+        self.show_objects(*(dict(name=name, held=False, assisted=False, pose=types.SimpleNamespace(
+            position=point(x + 0.4), orientation=point(z=half, w=half))) for name, x in places.items()))
 
     def test_the_view_goes_with_the_operator_and_shows_its_speed(self):
         self.show_with_operators('operator')

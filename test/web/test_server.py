@@ -35,8 +35,8 @@ def pose(x=0.0):
 
 
 def object_states(count, x):
-    return types.SimpleNamespace(objects=[types.SimpleNamespace(name='body_%d' % i, held=False, pose=pose(x - 0.01 * i))
-                                          for i in range(count)])
+    return types.SimpleNamespace(objects=[types.SimpleNamespace(name='body_%d' % i, held=False, assisted=False,
+                                                                pose=pose(x - 0.01 * i)) for i in range(count)])
 
 
 def rendered_hands(count):

@@ -57,6 +57,9 @@ Vector3 tip_of(const Hand& hand, int finger);
 Vector3 base_of(const Hand& hand, bool by_palm);
 /// Distance from the mean fingertip of the grip to the base [m].
 double aperture(const Grip& grip, const Hand& hand);
+[[deprecated("use aperture")]] inline double opening(const Grip& grip, const Hand& hand) {
+  return aperture(grip, hand);
+}
 /// Ends of the distal phalanges in the palm's frame [m].
 DistalEnds distal_ends(const Hand& hand);
 /// Motion of the opposing contact groups in the palm since the grip began: the rigid motion nearest to that

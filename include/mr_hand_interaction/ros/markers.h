@@ -30,6 +30,7 @@ struct PictureStyle {
   std_msgs::ColorRGBA contacts = color(1.0, 1.0, 1.0);
   std_msgs::ColorRGBA sticks = color(0.000, 0.620, 0.451), slips = color(0.941, 0.894, 0.259);
   std_msgs::ColorRGBA forces = color(0.97, 0.97, 0.97);
+  std_msgs::ColorRGBA assist = color(0.800, 0.475, 0.655);  ///< forces of grasp assist
   std_msgs::ColorRGBA impacts = color(1.0, 0.85, 0.35);
   double least_force = 0.1;  ///< smallest force with an arrow [N]
 };

@@ -41,7 +41,7 @@ struct TriangleMesh {
 //    bounding_radius  of the smallest sphere around the origin that contains it [m]
 //    moments          of a solid of its form
 //    farthest         support point along n
-//    exit_distance          distance from `point` along the unit vector `direction` to the surface
+//    exit_distance    distance from `point` along the unit vector `direction` to the surface
 //    core             the equal capsule, if it is a ball or a capsule
 //    prism            the equal prism, if it is one
 //    closest          closest features to a capsule of the hand; beyond a distance of `margin` any feature
@@ -56,6 +56,10 @@ struct Sphere {
   SolidMoments moments() const;
   Vector3 farthest(const Vector3& n) const;
   std::optional<double> exit_distance(const Vector3& point, const Vector3& direction) const;
+  [[deprecated("use exit_distance")]] std::optional<double> way_out(const Vector3& point,
+                                                                    const Vector3& direction) const {
+    return exit_distance(point, direction);
+  }
   std::optional<Capsule> core() const;
   std::optional<PrismForm> prism() const { return std::nullopt; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
@@ -69,6 +73,10 @@ struct Box {
   SolidMoments moments() const;
   Vector3 farthest(const Vector3& n) const;
   std::optional<double> exit_distance(const Vector3& point, const Vector3& direction) const;
+  [[deprecated("use exit_distance")]] std::optional<double> way_out(const Vector3& point,
+                                                                    const Vector3& direction) const {
+    return exit_distance(point, direction);
+  }
   std::optional<Capsule> core() const;
   std::optional<PrismForm> prism() const { return PrismForm{half_extents, false}; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
@@ -84,6 +92,10 @@ struct Cylinder {
   SolidMoments moments() const;
   Vector3 farthest(const Vector3& n) const;
   std::optional<double> exit_distance(const Vector3& point, const Vector3& direction) const;
+  [[deprecated("use exit_distance")]] std::optional<double> way_out(const Vector3& point,
+                                                                    const Vector3& direction) const {
+    return exit_distance(point, direction);
+  }
   std::optional<Capsule> core() const;
   std::optional<PrismForm> prism() const { return PrismForm{{radius, radius, half_length}, true}; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
@@ -99,6 +111,10 @@ struct Pill {
   SolidMoments moments() const;
   Vector3 farthest(const Vector3& n) const;
   std::optional<double> exit_distance(const Vector3& point, const Vector3& direction) const;
+  [[deprecated("use exit_distance")]] std::optional<double> way_out(const Vector3& point,
+                                                                    const Vector3& direction) const {
+    return exit_distance(point, direction);
+  }
   std::optional<Capsule> core() const;
   std::optional<PrismForm> prism() const { return std::nullopt; }
   ClosestFeatures closest(const Capsule& capsule, double margin) const;
@@ -114,6 +130,10 @@ struct Mesh {
   SolidMoments moments() const;
   Vector3 farthest(const Vector3& n) const;
   std::optional<double> exit_distance(const Vector3& point, const Vector3& direction) const;
+  [[deprecated("use exit_distance")]] std::optional<double> way_out(const Vector3& point,
+                                                                    const Vector3& direction) const {
+    return exit_distance(point, direction);
+  }
   std::optional<Capsule> core() const;
   std::optional<PrismForm> prism() const { return std::nullopt; }
 };
