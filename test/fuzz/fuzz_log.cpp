@@ -12,7 +12,7 @@ void advance(LiveSimulation& simulation, int from) {
   for (int i = from; i < from + 4; ++i) {
     const Vector3 tip(0.01 * i, 0.0, 0.0);
     simulation.simulation().advance(
-        {testing::at(0.005 * i), {testing::finger(tip, tip + Vector3(0, 0.03, 0), 0.008)}});
+        {mrhi::testing::at(0.005 * i), {mrhi::testing::finger(tip, tip + Vector3(0, 0.03, 0), 0.008)}});
     fuzzing::require(simulation.simulation().result().not_finite.empty(), "what comes out is finite");
   }
 }

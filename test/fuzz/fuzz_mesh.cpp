@@ -35,17 +35,18 @@ TriangleMesh mesh_of_file(int kind, const std::string& text) {
 }
 
 void touch(const TriangleMesh& mesh) {
-  Body body = testing::ball_body(0.1, 0.2);
+  Body body = mrhi::testing::ball_body(0.1, 0.2);
   body.shapes = {{Mesh{std::make_shared<const TriangleMesh>(mesh), "", Vector3::Ones()}, {}}};
   try {
     complete(body);
   } catch (const std::invalid_argument& error) {
     return fuzzing::require_one_line(error.what());  // a size beyond the limits
   }
-  Simulation simulation(testing::scene_of(body), testing::unfiltered(ContactModelKind::implicit));
+  Simulation simulation(mrhi::testing::scene_of(body), mrhi::testing::unfiltered(ContactModelKind::implicit));
   for (int i = 0; i < 12; ++i) {
     const Vector3 tip(-0.12 + 0.02 * i, 0.01, 0.02);
-    simulation.advance({testing::at(0.01 * i), {testing::finger(tip, tip + Vector3(0, 0.03, 0), 0.008)}});
+    simulation.advance(
+        {mrhi::testing::at(0.01 * i), {mrhi::testing::finger(tip, tip + Vector3(0, 0.03, 0), 0.008)}});
     fuzzing::require(simulation.result().not_finite.empty(), "what comes out is finite");
   }
 }

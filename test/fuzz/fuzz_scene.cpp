@@ -23,7 +23,8 @@ void simulate(const Scene& scene, const Configuration& configuration) {
   Simulation simulation(scene, configuration);
   for (int i = 0; i < 4; ++i) {
     const Vector3 tip(0.01 * i, 0.0, 0.0);
-    simulation.advance({testing::at(0.005 * i), {testing::finger(tip, tip + Vector3(0, 0.03, 0), 0.008)}});
+    simulation.advance(
+        {mrhi::testing::at(0.005 * i), {mrhi::testing::finger(tip, tip + Vector3(0, 0.03, 0), 0.008)}});
     fuzzing::require(simulation.result().not_finite.empty(), "what comes out is finite");
   }
 }

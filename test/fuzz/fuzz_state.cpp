@@ -68,7 +68,7 @@ void go_on_from(const SimulationState& state, const fuzzing::StepCase& of) {
   Simulation simulation(of.scene, of.configuration);
   simulation.set_state(state);
   for (int i = 1; i <= 5; ++i) {
-    const Hand hand = testing::posed_hand(relaxed_posture(), {});
+    const Hand hand = mrhi::testing::posed_hand(relaxed_posture(), {});
     simulation.advance({last + i * 10'000'000, {hand}});
     for (const Hand& tracked : simulation.result().tracked)
       require(fuzzing::finite(tracked), "tracked hands are finite");
