@@ -11,6 +11,7 @@ import re
 REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # The suites that are asked for each folder, those that are likely to notice first.
 SUITES = {
+    "math": "math rendering simulation",
     "text": "text scene training replay",
     "scene": "scene training simulation joints",
     "configuration": "scene simulation ros",
