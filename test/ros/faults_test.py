@@ -12,6 +12,7 @@ import time
 import unittest
 
 import rosbag
+import rosgraph
 import roslib.packages
 import rospy
 import rostest
@@ -131,6 +132,7 @@ class FaultsTest(unittest.TestCase):
         command = ["rosmaster", "--core", "-p", str(port)]
         core = subprocess.Popen(command)
         self.addCleanup(lambda: (core.kill(), core.wait()))
+        wait_until(lambda: rosgraph.is_master_online(uri), "the master, without which rostopic ends")
         with Pipeline(uri) as pipeline:
             viewer = subprocess.Popen(["rostopic", "echo", "-p", "/rendered_hands/header/stamp"],
                                       env=pipeline.environment, stdout=subprocess.PIPE, universal_newlines=True)
