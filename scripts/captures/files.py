@@ -222,12 +222,12 @@ def read_bvh(path):
         rows = np.array([[float(x) for x in line.split()] for line in file if line.strip()])
     places, turns, begin = [], [], 0
     for parent, offset, of in zip(parents, offsets, channels):
-        told = dict(zip(of, rows[:, begin:begin + len(of)].T))
+        values = dict(zip(of, rows[:, begin:begin + len(of)].T))
         begin += len(of)
         place = np.tile(np.array(offset), (len(rows), 1)) + np.array(
-            [told.get(axis + 'position', np.zeros(len(rows))) for axis in 'XYZ']).T
+            [values.get(axis + 'position', np.zeros(len(rows))) for axis in 'XYZ']).T
         order = ''.join(name[0] for name in of if name.endswith('rotation'))  # upper case: about the axes that turn along
-        turn = Rotation.from_euler(order, np.array([told[axis + 'rotation'] for axis in order]).T, degrees=True) if order else (
+        turn = Rotation.from_euler(order, np.array([values[axis + 'rotation'] for axis in order]).T, degrees=True) if order else (
             Rotation.from_quat(np.tile([0, 0, 0, 1], (len(rows), 1))))
         places.append(place if parent is None else places[parent] + turns[parent].apply(place))
         turns.append(turn if parent is None else turns[parent] * turn)

@@ -18,7 +18,7 @@ from .umetrack import UmeTrack
 
 # `hands`: {side: (frames, 21, 3)} in MANO's order from palm to tip, nan where not seen; `poses`: (frames, 4, 4) of the object;
 # `mesh`: its file, `scale` its unit in metres; `ranges`: [first, end) frames that may be cut, or None for all. An object on a
-# hinge has `angles` [rad], 0 where it is closed, and `mesh` is (top, bottom): the top turns about -z of the bottom, whose pose is told.
+# hinge has `angles` [rad], 0 where it is closed, and `mesh` is (top, bottom): the top turns about -z of the bottom, whose pose is given.
 Capture = collections.namedtuple('Capture', 'name person thing times hands poses mesh scale ranges angles')
 Capture.__new__.__defaults__ = (1.0, None, None)
 SIDES = ('right', 'left')
@@ -69,17 +69,17 @@ def _hinged(root, name, person, joints, rotations, places, angles):
 
 def artigrasp(root, mano, models):
     """ARCTIC as ArtiGrasp has it: arctic/OBJECT/sN/NAME.object.npy (millimetres), mano_double/sN/NAME.mano.npy (`trans`) and
-    mano_double/ee/sN/NAME_{r,l}.npy, the joints in the world; 30 Hz. Its first frames are blank: the wrist is not where it is told."""
+    mano_double/ee/sN/NAME_{r,l}.npy, the joints in the world; 30 Hz. Its first frames are blank: the wrist is not where it should be."""
     for path in _folders(root, 'arctic/*/s*/*.object.npy', 'the folder that arctic and mano_double are in'):
         person, name = path.split(os.sep)[-2], os.path.basename(path)[:-len('.object.npy')]
         files = {side: os.path.join(root, 'mano_double', 'ee', person, '%s_%s.npy' % (name, side[0])) for side in SIDES}
         fitted = os.path.join(root, 'mano_double', person, name + '.mano.npy')
         if not all(map(os.path.exists, (fitted, *files.values()))):
             continue  # a stand-in of s5, by a network
-        moved, told, joints = np.asarray(read_npy(path), float), read_npy(fitted), {}
+        moved, data, joints = np.asarray(read_npy(path), float), read_npy(fitted), {}
         for side, file in files.items():
             joints[side] = np.asarray(read_npy(file), float)[:len(moved)]
-            beyond = joints[side][:, 0] - np.asarray(told[side]['trans'], float)[:len(joints[side])]
+            beyond = joints[side][:, 0] - np.asarray(data[side]['trans'], float)[:len(joints[side])]
             joints[side][np.abs(beyond - np.median(beyond, axis=0)).max(axis=1) > 1e-3] = np.nan
         count = min(len(moved), *map(len, joints.values()))
         yield _hinged(models or os.path.join(root, 'arctic'), name, person, {side: of[:count] for side, of in joints.items()},
@@ -90,8 +90,8 @@ def dexmachina(root, mano, models):
     """ARCTIC as DexMachina has it: processed/sNN/NAME.npy (`joints.right`, `.left`, `obj_trans`, `obj_quat` with w first, `obj_arti`);
     30 Hz."""
     for path in _folders(root, 'processed/s*/*.npy', 'the folder that processed and the objects are in'):
-        told = read_npy(path)
-        of, world = told['params'], told['world_coord']
+        data = read_npy(path)
+        of, world = data['params'], data['world_coord']
         yield _hinged(models or root, os.path.basename(path)[:-4], path.split(os.sep)[-2],
                       {side: world['joints.' + side] for side in SIDES},
                       Rotation.from_quat(np.asarray(of['obj_quat'])[:, [1, 2, 3, 0]]), np.asarray(of['obj_trans'], float), of['obj_arti'])
@@ -201,31 +201,31 @@ def hot3d(root, mano, models):
 def oakink2(root, mano, models):
     """anno_preview/SEQUENCE.pkl: raw_mano by frame (quaternions w first), obj_transf; object_repair/align_ds/OBJECT/*; 120 Hz."""
     for path in _folders(root, 'anno_preview/*.pkl', 'the folder that holds anno_preview'):
-        told, hands = read_pickle(path), {}
-        frames = sorted(told['mocap_frame_id_list'])
+        data, hands = read_pickle(path), {}
+        frames = sorted(data['mocap_frame_id_list'])
         for side, key in zip(SIDES, ('rh', 'lh')):
-            turns = np.array([np.reshape(told['raw_mano'][f][key + '__pose_coeffs'], (16, 4)) for f in frames], float)[:, :, [1, 2, 3, 0]]
+            turns = np.array([np.reshape(data['raw_mano'][f][key + '__pose_coeffs'], (16, 4)) for f in frames], float)[:, :, [1, 2, 3, 0]]
             hands[side] = mano(side).joints(
                 Rotation.from_quat(turns[:, 0]), Rotation.from_quat(turns[:, 1:].reshape(-1, 4)),
-                np.array([np.ravel(told['raw_mano'][f][key + '__tsl']) for f in frames], float),
-                np.ravel(told['raw_mano'][frames[0]][key + '__betas']), wrist_at_translation=True)
+                np.array([np.ravel(data['raw_mano'][f][key + '__tsl']) for f in frames], float),
+                np.ravel(data['raw_mano'][frames[0]][key + '__betas']), wrist_at_translation=True)
         name = os.path.splitext(os.path.basename(path))[0]
-        for thing in told['obj_list']:
+        for thing in data['obj_list']:
             folder = os.path.join(models or os.path.join(root, 'object_repair', 'align_ds'), thing)
             mesh = [file for file in sorted(glob.glob(os.path.join(folder, '*'))) if file.endswith(('.obj', '.ply'))]
             yield Capture('%s_%s' % (name, thing), name.split('__')[1] if '__' in name else name, thing,
                           np.array(frames, float) / 120.0 - frames[0] / 120.0, hands,
-                          np.array([told['obj_transf'][thing][f] for f in frames], float), mesh[0] if mesh else folder + '/*.obj')
+                          np.array([data['obj_transf'][thing][f] for f in frames], float), mesh[0] if mesh else folder + '/*.obj')
 
 
 def taco(root, mano, models):
     """Hand_Poses/TRIPLET/SEQUENCE/{right,left}_hand.pkl and _hand_shape.pkl, Object_Poses/TRIPLET/SEQUENCE/{tool,target}_NUMBER.npy,
-    Object_Models/NUMBER_cm.obj (centimetres); 30 Hz. Persons are not told."""
+    Object_Models/NUMBER_cm.obj (centimetres); 30 Hz. Persons are not named."""
     for folder in _folders(root, 'Hand_Poses/*/*', 'the folder that holds Hand_Poses'):
         hands = {}
         for side in SIDES:
-            told = read_pickle(os.path.join(folder, side + '_hand.pkl'))
-            rows = [told[key] for key in sorted(told)]
+            data = read_pickle(os.path.join(folder, side + '_hand.pkl'))
+            rows = [data[key] for key in sorted(data)]
             pose = np.array([np.ravel(row['hand_pose']) for row in rows], float)
             hands[side] = mano(side).joints(
                 Rotation.from_rotvec(pose[:, :3]), pose[:, 3:48], np.array([np.ravel(row['hand_trans']) for row in rows], float),
@@ -243,17 +243,17 @@ def grab(root, mano, models):
     """grab/sN/NAME.npz: rhand, lhand (24 components, about the flat hand) and object (axis-angle of the transposed rotation);
     vtemp and object_mesh are paths below ROOT; 120 Hz."""
     for path in _folders(root, 'grab/s*/*.npz', 'the folder that holds grab and tools'):
-        told, hands = read_npz(path), {}
+        data, hands = read_npz(path), {}
         for side, key in zip(SIDES, ('rhand', 'lhand')):
-            of, model = told[key]['params'], mano(side)
-            template = _points_of(root, told[key]['vtemp'])
+            of, model = data[key]['params'], mano(side)
+            template = _points_of(root, data[key]['vtemp'])
             hands[side] = model.joints(Rotation.from_rotvec(of['global_orient']), model.pose(of['hand_pose'], mean=False), of['transl'],
                                        template=template)
-        of, rate = told['object']['params'], float(told.get('framerate', 120.0))
+        of, rate = data['object']['params'], float(data.get('framerate', 120.0))
         person, name = path.split(os.sep)[-2], os.path.basename(path)[:-4]
-        yield Capture('%s_%s' % (person, name), person, str(told['obj_name']), np.arange(len(of['transl'])) / rate, hands,
+        yield Capture('%s_%s' % (person, name), person, str(data['obj_name']), np.arange(len(of['transl'])) / rate, hands,
                       _poses(Rotation.from_rotvec(of['global_orient']).inv(), of['transl']),
-                      os.path.join(models or root, str(told['object']['object_mesh'])))
+                      os.path.join(models or root, str(data['object']['object_mesh'])))
 
 
 # Length of the last bone with the skin at its end, against the bone before, from the thumb to the little finger: means of Buryanov
@@ -263,7 +263,7 @@ LAST_BONES = [0.81, 0.88, 0.81, 0.83, 1.09]
 
 def manipnet(root, mano, models):
     """SEQUENCE/OBJECT.bvh, leftHand.bvh and rightHand.bvh, in decimetres with y up; OBJECT.obj in MODELS or below ObjectModel; 120 Hz.
-    The tips are told by none: they are where the last bones end on average. One person."""
+    No file has the tips: they are where the last bones end on average. One person."""
     for path in _folders(root, '*/rightHand.bvh', 'the folder of the sequences'):
         folder, hands = os.path.dirname(path), {}
         if not os.path.exists(os.path.join(folder, 'leftHand.bvh')):
