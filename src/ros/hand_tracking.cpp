@@ -7,6 +7,7 @@
 #include <topic_tools/shape_shifter.h>
 
 #include <boost/make_shared.hpp>
+#include <deque>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -75,7 +76,7 @@ class TrackerTransforms : public TransformMemory {
 
   /// Takes the messages that wait.
   void take_waiting() {
-    std::vector<Arrival> arrivals;
+    std::deque<Arrival> arrivals;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       arrivals.swap(waiting_);
@@ -90,17 +91,21 @@ class TrackerTransforms : public TransformMemory {
 
  private:
   using Arrival = ros::MessageEvent<const tf2_msgs::TFMessage>;
+  /// Messages of a second, the longest that any waits; of more, the oldest are lost.
+  static constexpr std::size_t kMaxWaiting = 1000;
+
   /// This node's own transforms are of objects, which carry no tracker.
   void note(const Arrival& arrival) {
     if (arrival.getPublisherName() == ros::this_node::getName()) return;
     const std::lock_guard<std::mutex> lock(mutex_);
     waiting_.push_back(arrival);
+    if (waiting_.size() > kMaxWaiting) waiting_.pop_front();
   }
 
   InputStatistics& statistics_;
   ImmediateQueue at_once_;
   std::mutex mutex_;
-  std::vector<Arrival> waiting_;
+  std::deque<Arrival> waiting_;
   ros::Subscriber moving_, fixed_;
 };
 
