@@ -333,6 +333,80 @@ HANDS = collections.OrderedDict([  # settings of real_grasps, from the defaults 
 HANDS["neither: the paper's hand"] = dict(HANDS['assist alone'], **HANDS["a person's hand alone"])
 
 
+def _settings(chosen):
+    return [word for key, value in chosen.items() for word in ('--set', '%s=%s' % (key, value))]
+
+
+def _interval(units, at_least_wilson=False):
+    """95 % interval of a share, in per cent, by resampling independent units' (successes, trials)."""
+    import numpy
+    from statsmodels.stats.proportion import proportion_confint
+    units = numpy.array(units, float)
+    drawn = units[numpy.random.RandomState(1).randint(0, len(units), (10000, len(units)))].sum(axis=1)
+    ends = numpy.percentile(drawn[:, 0] / numpy.maximum(drawn[:, 1], 1e-9), (2.5, 97.5))
+    if at_least_wilson:
+        wilson = proportion_confint(*units.sum(axis=0), method='wilson')
+        ends = min(ends[0], wilson[0]), max(ends[1], wilson[1])
+    return '%.0f to %.0f' % (100 * ends[0], 100 * ends[1])
+
+
+PINCHES, GRABS = ('pinch20', 'pinch30', 'pinch40'), ('grab_sphere60', 'grab_sphere80', 'grab_cube60', 'grab_cube80')
+PASSES, RESTS = (('pass_sphere40', 'pass_cube40', 'pass_sphere60', 'pass_cube60'),
+                 ('rest_sphere60', 'rest_sphere100', 'rest_cube60', 'rest_cube100'))
+IN_PLACE = 10.0  # [mm]
+
+
+def recordings():
+    """Bodies put where the hands recorded in MR_HAND_RECORDINGS close."""
+    folder = os.environ.get('MR_HAND_RECORDINGS')
+    if not folder:
+        raise MeasurementError('MR_HAND_RECORDINGS is empty; allowed: a folder of recorded hands')
+    scratch, played = tempfile.mkdtemp(), collections.OrderedDict()
+    try:
+        for label, chosen in list(HANDS.items()) + [('`seed`, 100 N/m', {'contact_model': 'seed'})]:
+            run('real_grasps', '--output', scratch, *_settings(chosen), folder)
+            played[label] = (rows_of_file(scratch, 'real_grasps_events.csv'), rows_of_file(scratch, 'real_grasps.csv'))
+        return recordings_figures(played), {}
+    finally:
+        shutil.rmtree(scratch)
+
+
+def recordings_figures(played):
+    """Of {setting: (closings, rows)}."""
+    defaults = played['defaults'][0]
+    return {
+        'hands': table(['', *['pinch %d mm' % size for size in (20, 30, 40)], *[
+            'grab %s %d mm' % body for body in (('sphere', 60), ('sphere', 80), ('cube', 60), ('cube', 80))]], [
+                [label] + [_held_and_force(rows, name) for name in PINCHES + GRABS] for label, (_, rows) in played.items()]),
+        'sums': table(['', 'default hand', "the paper's hand"], [
+            [label] + [_held(played[hand][0], names) for hand in ('defaults', "neither: the paper's hand")]
+            for label, names in (('pinch, cubes of 20 to 40 mm', PINCHES), ('grab, spheres and cubes of 60 and 80 mm', GRABS))]),
+        'in_place': ' and '.join(_held([row for row in defaults if float(row['early_mm']) < IN_PLACE], names)
+                                 for names in (PINCHES, GRABS)),
+        'open_hands': ' and '.join(_held(defaults, names) for names in (PASSES, RESTS)),
+    }
+
+
+def _count(events, names):
+    some = [row['held'] == '1' for row in events if row['row'] in names]
+    return sum(some), len(some)
+
+
+def _held(events, names):
+    units = collections.OrderedDict()
+    for row in events:
+        if row['row'] in names:
+            units.setdefault(row['recording'], []).append(row['held'] == '1')
+    return '%d of %d (%s %%)' % (*_count(events, names), _interval(
+        [(sum(held), len(held)) for held in units.values()], at_least_wilson=True))
+
+
+def _held_and_force(rows, name):
+    row = next(row for row in rows if (row['row'], row['object']) == (name, 'all'))
+    force = ', %.0f N' % float(row['force_p90_N']) if name in PINCHES else ''
+    return '%s of %s%s' % (row['held'], row['events'], force)
+
+
 def captures():
     """Windows of captures, in the folders that CAPTURE_WINDOWS names, as scripts/import_captures writes them; the first in all settings."""
     folders = os.environ.get('CAPTURE_WINDOWS', '').split()
@@ -345,8 +419,8 @@ def captures():
             for number, (label, chosen) in enumerate(HANDS.items() if index == 0 else [('defaults', {})]):
                 output = os.path.join(scratch, '%d_%d' % (index, number))
                 os.makedirs(output)
-                told = run('real_grasps', '--arctic', folder, '--lead', '1', '--list', '--output', output, *[
-                    word for key, value in chosen.items() for word in ('--set', '%s=%s' % (key, value))])
+                leads = '1,0.3' if (index, number) == (0, 0) else '1'
+                told = run('real_grasps', '--arctic', folder, '--lead', leads, '--list', '--output', output, *_settings(chosen))
                 results[-1][1][label] = (output, told)
         return captures_figures(results), {}
     finally:
@@ -376,28 +450,35 @@ def captures_figures(results):
     first = results[0][1]
     shares = [(label, _splits(output)['1', 'all']) for label, (output, _) in first.items() if label != 'defaults']
     rigid = [('`rigid`', _splits(first['defaults'][0])['', 'all'])]
-    splits = {split: row for (lead, split), row in _splits(first['defaults'][0]).items() if lead == '1'}
+    of_first = _splits(first['defaults'][0])
+    splits = {split: row for (lead, split), row in of_first.items() if lead == '1'}
     return dict({'sets': table(['set', 'windows (captures)', 'people, objects', 'within 50 mm', 'within 20 mm', 'p90', '`rigid`: 20 mm',
                                 'difference, points'], sets),
-                 'chosen': _chosen(first['defaults'][1]),
+                 'chosen': _chosen(first['defaults'][1].split('windows lead 1 ')[0]),
+                 'short_lead': ' and '.join(_share(of_first['0.3', 'all'], limit) for limit in (50, 20)),
                  'settings': '; '.join('%s %.0f %% and %.0f %%%s' % (
                      label, 100 * float(row['within_50mm']), 100 * float(row['within_20mm']),
                      '' if label == '`rigid`' else ', ' + _newtons(row)) for label, row in shares + rigid)},
-                **{kind: ', '.join('%s %.0f %%' % (split.split(' ', 1)[1], 100 * float(row['within_50mm']))
+                **{kind: ', '.join('%s %s' % (split.split(' ', 1)[1], _share(row, 50))
                                    for split, row in sorted(splits.items(), key=lambda item: -float(item[1]['within_50mm']))
                                    if split.startswith(kind)) for kind in ('person', 'object')})
 
 
 def _chosen(told):
     """Of windows that --list named: those that the defaults were chosen on, and the others."""
-    windows = [(bool(re.match(CHOSEN_ON, name)), int(frames), (int(loose), int(tight))) for name, frames, loose, tight in re.findall(
-        r'^(\w+) +(\d+) frames of.*within 50 mm +(\d+) %.*within 20 mm +(\d+) %', told, re.MULTILINE) if re.search(r'_\d+$', name)]
+    windows = re.findall(r'^(\w+)_\d+ +(\d+) frames of.*within 50 mm +(\d+) %.*within 20 mm +(\d+) %', told, re.MULTILINE)
     parts = []
     for chosen, label in ((True, 'the %d that the defaults were chosen on'), (False, 'the other %d')):
-        some = [(frames, shares) for one, frames, shares in windows if one == chosen]
-        total = max(1, sum(frames for frames, _ in some))
-        parts.append('%.0f %% and %.0f %% in %s' % (*(sum(frames * shares[i] for frames, shares in some) / total for i in (0, 1)),
-                                                label % len(some)))
+        captures = collections.OrderedDict()
+        for name, *numbers in windows:
+            if bool(re.match(CHOSEN_ON, name + '_')) == chosen:
+                captures.setdefault(name, []).append([int(number) for number in numbers])
+        shares = []
+        for limit in (1, 2):
+            units = [(sum(row[0] * row[limit] / 100 for row in rows), sum(row[0] for row in rows)) for rows in captures.values()]
+            held, of = map(sum, zip(*units))
+            shares.append('%.0f %% (%s)' % (100 * held / of, _interval(units)))
+        parts.append('%s and %s in %s' % (*shares, label % sum(map(len, captures.values()))))
     return ', '.join(parts)
 
 
@@ -421,6 +502,7 @@ RECIPES = {
     'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
     'gloves': Recipe('1 minute', CORE + ['src/synthetic', 'src/training', 'config/hands'], gloves),
     'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),
+    'recordings': Recipe('1 minute', CORE + ['benchmark/real_grasps'], recordings),
     'study': Recipe('4 minutes', ['scripts/study/' + name for name in (
         'calibration.py', 'exact.py', 'linear.py', 'mixed_model.py', 'pairwise.py', 'permutation.py')], study),
 }

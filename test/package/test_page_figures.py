@@ -83,20 +83,41 @@ class TestCaptures(unittest.TestCase):
                 "within_50mm_low,within_50mm_high,within_20mm_low,within_20mm_high,captures")
         rows = ["none,rigid hand,all,,2,1,0,1,0.6,0.4,0,0.5,0.7,0.3,0.5,2"] + [
             "ours,implicit,%s,1,2,1,0,1,%s,0.5,17.7,0.6,0.8,0.4,0.6,2" % row
-            for row in (("all", 0.7), ("person s1", 0.65), ("person s2", 0.75), ("object box", 0.7))]
+            for row in (("all", 0.7), ("person s1", 0.65), ("person s2", 0.75), ("object box", 0.7))] + [
+                "ours,implicit,all,0.3,2,1,0,1,0.61,0.5,17.7,0.6,0.8,0.4,0.6,2"]
         for name, lines in (("windows.csv", ["window,seconds,mass_kg,set,person,object", "s1_box_use_01_3,1,1,artigrasp,s1,box",
                                              "s2_notebook_use_02_7,1,1,artigrasp,s2,box"]), ("real_grasps_arctic.csv", [head] + rows)):
             with open(os.path.join(root, name), "w", encoding="utf-8") as file:
                 file.write("\n".join(lines) + "\n")
         told = ("s1_box_use_01_3   30 frames of   1 captures; within 50 mm  40 % (40 to 40), within 20 mm  20 % (20 to 20); ...\n"
                 "s2_notebook_use_02_7   10 frames of   1 captures; within 50 mm  90 % (90 to 90), within 20 mm  80 % (80 to 80); ...\n"
+                "windows lead 1   40 frames ...\n"
                 "  against a rigid hand: within 20 mm +8 points (-4 to +13)\n")
         figures = page_recipes.captures_figures([[root, {"defaults": (root, told), "assist alone": (root, told)}]])
         self.assertEqual(figures["sets"].split("\n")[-1], "| ARCTIC | 2 (2) | 2, 1 | 70 % (60 to 80) | 50 % (40 to 60) | 18 N | "
                          "40 % (30 to 50) | +8 (-4 to +13) |")
-        self.assertEqual(figures["chosen"], "90 % and 80 % in the 1 that the defaults were chosen on, 40 % and 20 % in the other 1")
+        self.assertEqual(figures["chosen"], "90 % (90 to 90) and 80 % (80 to 80) in the 1 that the defaults were chosen on, "
+                         "40 % (40 to 40) and 20 % (20 to 20) in the other 1")
         self.assertEqual(figures["settings"], "assist alone 70 % and 50 %, 18 N; `rigid` 60 % and 40 %")
-        self.assertEqual((figures["person"], figures["object"]), ("s2 75 %, s1 65 %", "box 70 %"))
+        self.assertEqual((figures["person"], figures["object"]), ("s2 75 % (60 to 80), s1 65 % (60 to 80)", "box 70 % (60 to 80)"))
+        self.assertEqual(figures["short_lead"], "61 % (60 to 80) and 50 % (40 to 60)")
+
+
+class TestRecordings(unittest.TestCase):
+    def test_closings_are_counted_with_intervals_over_recordings(self):
+        def closing(row, recording, held, early="2"):
+            return {"row": row, "recording": recording, "held": held, "early_mm": early}
+        events = [closing("pinch20", "a", "1"), closing("pinch20", "a", "0", "30"), closing("pinch30", "b", "1"),
+                  closing("grab_cube60", "a", "0"), closing("pass_cube40", "a", "0"), closing("rest_cube60", "b", "1")]
+        rows = [{"row": name, "object": "all", "held": "1", "events": "2", "force_p90_N": "16.6"}
+                for name in page_recipes.PINCHES + page_recipes.GRABS]
+        played = {label: (events, rows) for label in page_recipes.HANDS}
+        figures = page_recipes.recordings_figures(played)
+        self.assertTrue(figures["hands"].split("\n")[2].startswith("| defaults | 1 of 2, 17 N | 1 of 2, 17 N |"), figures["hands"])
+        # Of a, half is held, of b all: resampled 50 to 100 %; Wilson's interval of 2 of 3 begins at 21 %.
+        self.assertIn("| pinch, cubes of 20 to 40 mm | 2 of 3 (21 to 100 %) |", figures["sums"])
+        self.assertTrue(figures["in_place"].startswith("2 of 2 (34 to 100 %) and 0 of 1 (0 to 79 %)"), figures["in_place"])
+        self.assertEqual(figures["open_hands"], "0 of 1 (0 to 79 %) and 1 of 1 (21 to 100 %)")
 
 
 if __name__ == "__main__":
