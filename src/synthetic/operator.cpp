@@ -21,8 +21,9 @@ constexpr double kFirmer = 1.2, kFirmest = 1.5;
 constexpr double kLoad = 0.5, kUnload = 0.7, kOpen = 0.5, kRetreat = 0.7,
                  kGoAside = 0.8;  // times at pace 1 [s]
 
-constexpr double kWidest = 0.61;         // fraction of the path after which the hand begins to close
-constexpr double kTouch = 0.07;          // from feeling to acting [s]
+constexpr double kWidest = 0.61;  // fraction of the path after which the hand begins to close
+constexpr double kTouch = 0.07;   // from feeling to acting [s]
+constexpr double kSight = 0.1;  // from seeing to correcting a movement under way (Paulignan et al. 1991) [s]
 constexpr double kCorrecting = 2.0;      // rate of correcting a seen error [1/s]
 constexpr double kFastCorrection = 0.1;  // [m/s]
 constexpr double kUnseen = 0.5;          // unseen fraction of an error
@@ -60,9 +61,11 @@ SimulatedOperator::SimulatedOperator(const OperatorSkill& skill, const Body& obj
 HandPlace SimulatedOperator::move(double time, const Sight& sight) {
   past_.push_back({time, sight, now_.wrist, depth_});
   while (past_.size() > 1 && past_[1].time <= time - skill_.reaction_time) past_.pop_front();
-  if (past_.front().time <= time - skill_.reaction_time) decide(time, past_.front());
+  const bool under_way = phase_ == Phase::reaching || phase_ == Phase::grasping;
+  const Moment seen = under_way ? before(time, std::min(kSight, skill_.reaction_time)) : past_.front();
+  if (past_.front().time <= time - skill_.reaction_time) decide(time, seen);
   const double since = time - last_time_;
-  correct(since, past_.front());
+  correct(since, seen);
   squeeze(time, since);
   HandPlace next = planned(time);
   if (gripping_) next.posture = postures_->at(depth_);
@@ -109,17 +112,17 @@ void SimulatedOperator::correct(double since, const Moment& seen) {
   corrected_ += since * speed;
 }
 
-/// What it felt kTouch ago.
-const SimulatedOperator::Moment& SimulatedOperator::felt(double time) const {
+/// The latest moment at least a delay ago.
+const SimulatedOperator::Moment& SimulatedOperator::before(double time, double delay) const {
   const auto later = std::find_if(past_.begin(), past_.end(),
-                                  [&](const Moment& moment) { return moment.time > time - kTouch; });
+                                  [&](const Moment& moment) { return moment.time > time - delay; });
   return later == past_.begin() ? *later : *(later - 1);
 }
 
 /// Sets a grip force above the need of the coming load, and the depth for it by the learned stiffness.
 void SimulatedOperator::squeeze(double time, double since) {
   if (!gripping_ || since <= 0.0) return;
-  const Moment& touch = felt(time);
+  const Moment& touch = before(time, kTouch);
   const bool pressed = touch.depth > 0.0 && touch.time > *gripping_;
   const double share = minimum_jerk(std::clamp((time - *gripping_) / (kLoad * skill_.pace), 0.0, 1.0));
   const bool helped = share == 1.0 && touch.sight.held && touch.sight.grip < kUnfelt * wanted_;
@@ -311,8 +314,8 @@ void SimulatedOperator::close_to(double depth, double duration) {
 }
 
 bool SimulatedOperator::is_astray(const Moment& seen) const {
-  const Pose where = expected(aim_.sight, seen.time - aim_.time);
-  return (seen.sight.object.position - where.position).norm() > kAstray;
+  const Vector3 where = aim_.sight.object.position + (seen.time - aim_.time) * drift_;
+  return (seen.sight.object.position - where).norm() > kAstray;
 }
 
 double SimulatedOperator::distance_from_grip(const Moment& seen) const {

@@ -141,8 +141,9 @@ class PractisedPerson : public Person {
 };
 
 /// A program in the role of a person: takes an object, carries it to its target and releases it, by what it
-/// saw a reaction time ago. Its grip follows the force felt shortly before and the expected load. A right
-/// hand; the same seed and sights give the same bits.
+/// saw a reaction time ago, and corrects a movement to the object by what it saw 0.1 s ago. Its grip follows
+/// the force felt shortly before and the expected load. A right hand; the same seed and sights give the same
+/// bits.
 class SimulatedOperator : public Person {
  public:
   enum class Phase : std::uint8_t { watching, reaching, grasping, carrying, letting_go, withdrawing, done };
@@ -173,7 +174,7 @@ class SimulatedOperator : public Person {
   void prepare_grasp();
   void correct(double since, const Moment& seen);
   void squeeze(double time, double since);
-  const Moment& felt(double time) const;
+  const Moment& before(double time, double delay) const;
   HandPlace planned(double time) const;
   Vector3 swung(double time) const;
   Vector3 acceleration(double time) const;
