@@ -225,9 +225,9 @@ def operators_figures(folder):
             lines.append([gravity + ' g', '`%s`' % model, '%.1f ± %.1f (± %.1f)' % tuple(
                 float(time[key]) for key in ('mean', 'sd', 'ci95')),
                           '%.2f ± %.2f' % (float(attempts['mean']), float(attempts['sd'])), *drops,
-                          '%d of %d' % (sum(row['result'] == 'completed' for row in some), len(some))])
+                          '%d' % sum(row['result'] == 'completed' for row in some)])
     return {'seed_1': table(['', '', 'time [s], mean ± sd (± 95 %)', 'drops while manipulated, mean ± sd',
-                             'drops: cube', 'flat', 'long', 'completed'], lines),
+                             'drops: cube', 'flat', 'long', 'completed of %d' % len(some)], lines),
             'table_1': _table_1(comparison, pairs, trials)}
 
 
@@ -350,9 +350,11 @@ def _interval(units, at_least_wilson=False):
     return '%.0f to %.0f' % (100 * ends[0], 100 * ends[1])
 
 
-PINCHES, GRABS = ('pinch20', 'pinch30', 'pinch40'), ('grab_sphere60', 'grab_sphere80', 'grab_cube60', 'grab_cube80')
-PASSES, RESTS = (('pass_sphere40', 'pass_cube40', 'pass_sphere60', 'pass_cube60'),
-                 ('rest_sphere60', 'rest_sphere100', 'rest_cube60', 'rest_cube100'))
+BODIES = collections.OrderedDict([
+    ('pinch20', 'pinch 20 mm'), ('pinch30', '30 mm'), ('pinch40', '40 mm'), ('grab_sphere60', 'grab sphere 60 mm'),
+    ('grab_sphere80', '80 mm'), ('grab_cube60', 'cube 60 mm'), ('grab_cube80', '80 mm')])
+PINCHES, GRABS = tuple(BODIES)[:3], tuple(BODIES)[3:]
+PASSES = ('pass_sphere40', 'pass_cube40'), ('pass_sphere60', 'pass_cube60')  # at 0 g, and at 1 g on a column
 IN_PLACE = 10.0  # [mm]
 
 
@@ -375,15 +377,14 @@ def recordings_figures(played):
     """Of {setting: (closings, rows)}."""
     defaults = played['defaults'][0]
     return {
-        'hands': table(['', *['pinch %d mm' % size for size in (20, 30, 40)], *[
-            'grab %s %d mm' % body for body in (('sphere', 60), ('sphere', 80), ('cube', 60), ('cube', 80))]], [
-                [label] + [_held_and_force(rows, name) for name in PINCHES + GRABS] for label, (_, rows) in played.items()]),
+        'hands': table([''] + ['%s (of %s)' % (label, _row(played['defaults'][1], name)['events']) for name, label in BODIES.items()], [
+            [label] + [_held_and_force(rows, name) for name in BODIES] for label, (_, rows) in played.items()]),
         'sums': table(['', 'default hand', "the paper's hand"], [
             [label] + [_held(played[hand][0], names) for hand in ('defaults', "neither: the paper's hand")]
-            for label, names in (('pinch, cubes of 20 to 40 mm', PINCHES), ('grab, spheres and cubes of 60 and 80 mm', GRABS))]),
+            for label, names in (('pinch, cubes of 20 to 40 mm', PINCHES), ('grab, of 60 and 80 mm', GRABS))]),
         'in_place': ' and '.join(_held([row for row in defaults if float(row['early_mm']) < IN_PLACE], names)
                                  for names in (PINCHES, GRABS)),
-        'open_hands': ' and '.join(_held(defaults, names) for names in (PASSES, RESTS)),
+        'open_hands': ' and '.join(_held(defaults, names) for names in PASSES),
     }
 
 
@@ -401,10 +402,13 @@ def _held(events, names):
         [(sum(held), len(held)) for held in units.values()], at_least_wilson=True))
 
 
+def _row(rows, name):
+    return next(row for row in rows if (row['row'], row['object']) == (name, 'all'))
+
+
 def _held_and_force(rows, name):
-    row = next(row for row in rows if (row['row'], row['object']) == (name, 'all'))
-    force = ', %.0f N' % float(row['force_p90_N']) if name in PINCHES else ''
-    return '%s of %s%s' % (row['held'], row['events'], force)
+    row = _row(rows, name)
+    return row['held'] + (', %.0f N' % float(row['force_p90_N']) if name in PINCHES else '')
 
 
 def captures():

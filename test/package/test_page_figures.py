@@ -108,12 +108,12 @@ class TestRecordings(unittest.TestCase):
         def closing(row, recording, held, early="2"):
             return {"row": row, "recording": recording, "held": held, "early_mm": early}
         events = [closing("pinch20", "a", "1"), closing("pinch20", "a", "0", "30"), closing("pinch30", "b", "1"),
-                  closing("grab_cube60", "a", "0"), closing("pass_cube40", "a", "0"), closing("rest_cube60", "b", "1")]
+                  closing("grab_cube60", "a", "0"), closing("pass_cube40", "a", "0"), closing("pass_cube60", "b", "1")]
         rows = [{"row": name, "object": "all", "held": "1", "events": "2", "force_p90_N": "16.6"}
                 for name in page_recipes.PINCHES + page_recipes.GRABS]
         played = {label: (events, rows) for label in page_recipes.HANDS}
         figures = page_recipes.recordings_figures(played)
-        self.assertTrue(figures["hands"].split("\n")[2].startswith("| defaults | 1 of 2, 17 N | 1 of 2, 17 N |"), figures["hands"])
+        self.assertTrue(figures["hands"].split("\n")[2].startswith("| defaults | 1, 17 N | 1, 17 N |"), figures["hands"])
         # Of a, half is held, of b all: resampled 50 to 100 %; Wilson's interval of 2 of 3 begins at 21 %.
         self.assertIn("| pinch, cubes of 20 to 40 mm | 2 of 3 (21 to 100 %) |", figures["sums"])
         self.assertTrue(figures["in_place"].startswith("2 of 2 (34 to 100 %) and 0 of 1 (0 to 79 %)"), figures["in_place"])
