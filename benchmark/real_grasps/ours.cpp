@@ -10,7 +10,7 @@
 namespace mrhi::real_grasps {
 namespace {
 
-constexpr double kUnbounded = 1e3;       // no bounds: a lost body stays lost [m]
+constexpr double kUnbounded = 1e3;      // no bounds: a lost body stays lost [m]
 constexpr double kColumn = 0.5;         // height of the column under a resting body [m]
 constexpr double kColumnRadius = 0.02;  // [m]
 
