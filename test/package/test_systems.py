@@ -86,8 +86,10 @@ class SystemsTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:  # without what has been built
             package = os.path.join(folder, "mr_hand_interaction")
             shutil.copytree(PACKAGE, package, ignore=lambda _, names: {"build", "devel", "out", ".git"} & set(names))
-            done = subprocess.run(["catkin_lint", "-W1", package], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+            done = subprocess.run(["catkin_lint", "-W1", package], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                   universal_newlines=True)
+        self.assertNotIn("cannot lint", done.stdout)
+        self.assertIn("checked 1 packages", done.stdout)
         faults = [line for line in done.stdout.splitlines() if ": error: " in line]
         self.assertEqual([line for line in faults if not any(known in line for known in NO_FAULTS)], [])
 
