@@ -106,6 +106,12 @@ class SystemsTest(unittest.TestCase):
                 self.assertIn(option, usage.stdout)
         self.assertEqual({"build", "devel"} - set(text_of(".dockerignore").split()), set())
 
+    @unittest.skipUnless(os.path.exists(os.path.join(PACKAGE, "devel", "setup.bash")), "not built with catkin")
+    def test_the_container_s_entry_point_leaves_options_to_the_command(self):
+        done = subprocess.run(["bash", os.path.join(PACKAGE, "scripts/in_container"), "printf", "%s,", "--help", "--local"],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        self.assertEqual((done.returncode, done.stdout), (0, "--help,--local,"))
+
     def test_all_files_tell_one_version(self):
         version = xml.etree.ElementTree.parse(os.path.join(PACKAGE, "package.xml")).getroot().findtext("version")
         self.assertIn("\nversion: %s\n" % version, text_of("CITATION.cff"))
