@@ -20,7 +20,7 @@ const ShapeKind& kind_of(const std::string& name) {
                    "' is not known; allowed: " + shape_kind_names() + ", or a URDF in its place");
 }
 
-/// A link of that shape; without an inertia of its own it gets the shape's.
+/// XML of a link with that shape. It has no inertia, so the loader computes the shape's.
 PlacedLink placed_shape(const ObjectRequest& request) {
   const ShapeKind& kind = kind_of(request.shape);
   if (request.size.size() != kind.sizes.size()) {
