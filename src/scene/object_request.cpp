@@ -103,7 +103,7 @@ ObjectRequest with_file_read(ObjectRequest request, const SceneOptions& options)
   if (file.compare(0, 7, "file://") == 0) file = file.substr(7);
   if (file.compare(0, 10, "package://") == 0)
     file = options.resolve_package_uri ? options.resolve_package_uri(file) : "";
-  const auto text = file.empty() ? std::nullopt : file_text(file, kMostXmlBytes + 1);
+  const auto text = file.empty() ? std::nullopt : file_text(file, kMaxXmlBytes + 1);
   if (!text || text->empty())
     throw SceneError(
         kSource + ": no URDF in '" + given +

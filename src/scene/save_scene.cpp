@@ -290,17 +290,17 @@ class Writer {
 
 /// Refuses names that are too long for a file system, or have control characters.
 void check_path(const fs::path& file, const std::string& shown) {
-  constexpr std::size_t kLongestName = 255, kLongest = 4095;
+  constexpr std::size_t kMaxNameBytes = 255, kMaxPathBytes = 4095;
   const std::string& whole = file.native();
   const bool plain = std::none_of(whole.begin(), whole.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
   });
   const bool fits = std::all_of(file.begin(), file.end(),
-                                [](const fs::path& name) { return name.native().size() <= kLongestName; });
-  if (!plain || !fits || whole.size() > kLongest || file.extension() != ".urdf")
+                                [](const fs::path& name) { return name.native().size() <= kMaxNameBytes; });
+  if (!plain || !fits || whole.size() > kMaxPathBytes || file.extension() != ".urdf")
     throw std::invalid_argument("file " + shown +
                                 " is not allowed; allowed: one that ends in .urdf, each name in it at most " +
-                                std::to_string(kLongestName) + " bytes, without control characters");
+                                std::to_string(kMaxNameBytes) + " bytes, without control characters");
   std::error_code ignored;
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, ignored))

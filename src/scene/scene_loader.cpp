@@ -387,7 +387,7 @@ std::string find_scene_file(const std::string& scene, const std::vector<std::str
 Scene load_scene(const std::string& urdf_file, const SceneOptions& options) {
   Scene scene;
   scene.name = fs::path(urdf_file).stem().string();
-  const std::optional<std::string> xml = file_text(urdf_file, kMostXmlBytes + 1);
+  const std::optional<std::string> xml = file_text(urdf_file, kMaxXmlBytes + 1);
   if (!xml || xml->empty()) throw SceneError(urdf_file + ": cannot be read; allowed: a readable URDF file");
   read_urdf(urdf_file, fs::path(urdf_file).parent_path().string(), *xml, options, scene);
   const Bounds usual = scene.bounds;
