@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <stdexcept>
 
 #include "synthetic/performance.h"
 #include "text/files.h"
@@ -61,6 +62,12 @@ int main(int argc, char** argv) {
   const int seeds = argc == 3 ? std::atoi(argv[2]) : 10;
   if (argc < 2 || argc > 3 || seeds < 1) {
     std::cerr << "usage: noisy_grasps MOTION [SEEDS]\n";
+    return 2;
+  }
+  try {
+    mrhi::make_motion(argv[1]);
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "noisy_grasps: " << error.what() << '\n';
     return 2;
   }
   std::cout << "motion,where,noise_mm,correlation,dropped,frames_per_s,held_estimated,held_fixed\n";

@@ -24,9 +24,9 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 WIDTH, HEIGHT = 460, 360  # of a picture; drawn twice as large, for smooth edges
 SHOWN_WIDTH = 305  # on the page: three beside each other
 QUALITY = "82"
-KEPT = 0.975  # of the screen; in the rest is the mark of the picture
+KEPT = 0.975  # of the screen; the rest has the picture's mark
 MOST = 60  # pictures of a page
-PITCH, DISTANCE = 0.42, 0.42  # of rviz's camera, which stays; what it sees is moved [rad, m]
+PITCH, DISTANCE = 0.42, 0.42  # of rviz's fixed camera; the scene is moved in front of it [rad, m]
 LAYERS = ("hand", "ghost", "objects", "fixtures", "friction", "forces", "newtons", "shadows")
 HIDDEN = ("contacts", "share", "impacts", "capsules", "text")
 WHAT = {"grasp": "the grasp begins", "before_loss": "before it goes", "loss": "the last touch"}
@@ -54,7 +54,7 @@ def from_yaw(yaw):
 
 
 def best_yaw(moment):
-    """Across the grip, so that both of its sides are seen, and not through the palm."""
+    """Yaw across the grip: shows both contact groups, and not from behind the palm."""
     to_palm = [palm - place for palm, place in zip(moment["palm"], moment["place"])]
     length = math.hypot(*to_palm) or 1.0
 
@@ -67,7 +67,7 @@ def best_yaw(moment):
 
 
 def focus_of(moment):
-    """Between the object's middle and the palm; of what is large, near the palm. And how far the camera is from it."""
+    """Focus between object and palm (near the palm for a large object), and the camera's distance from it."""
     radius = moment["radius"]
     share = 0.4 if radius < 0.1 else min(1.0, 1.0 - 0.06 / radius)
     focus = [place + share * (palm - place) for place, palm in zip(moment["place"], moment["palm"])]
@@ -129,14 +129,14 @@ def draw(moments, folder):
 
 
 def finish(picture, file):
-    """Half as large, and without the edge that has the mark."""
+    """Halves the size, and cuts off the edge with the mark."""
     inner = "%dx%d+0+0" % (KEPT * 2 * WIDTH, KEPT * 2 * HEIGHT)
     subprocess.run(["convert", picture, "-crop", inner, "+repage", "-resize", "%dx%d" % (WIDTH, HEIGHT), "-strip", "-quality",
                     QUALITY, file], check=True)
 
 
 class Markers:
-    """As of a message, for the stage."""
+    """Markers in the form of a message, for the stage."""
 
     def __init__(self, markers):
         self.markers = markers
@@ -160,7 +160,7 @@ def put_into_page(moments, files, page):
 
 
 def pictures(folder, markers):
-    """How many were drawn."""
+    """Draws the pictures; returns their number."""
     from rviz_stage import own_stage
     moments = read_moments(folder, markers)
     if not moments:
@@ -180,7 +180,7 @@ def main():
         pictures(*sys.argv[1:])
     except ImportError as error:
         print("explain: no pictures: rviz draws them, and its Python modules are missing: %s in %s" % (error, sys.executable), file=sys.stderr)
-    except Exception as error:  # what is in the folder may be anything
+    except Exception as error:  # the folder may contain anything
         print("explain: no pictures: %s" % program.one_line(str(error) or type(error).__name__), file=sys.stderr)
     else:
         return 0

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Records the poses of each scene from a run of its own, has rviz draw them picture by picture, and makes a film of the
-pictures: scripts/film starts it, with a master and a screen. Or draws a bag of replay --markers, on a screen of its own."""
+"""Records the poses of each scene in a separate run, lets rviz draw them picture by picture, and makes a film of the
+pictures. scripts/film starts it, with a master and a screen. Also draws a bag of replay --markers, on a private screen."""
 import argparse
 import collections
 import os
@@ -34,7 +34,7 @@ SCENES = {
     "training": Scene("training", ["training.launch", "rviz:=false", "record:=false", "participant:=P01", "hands:=operator"],
                       "training", 3.0),
 }
-WIDER = 1.2  # farther away than rviz begins
+WIDER = 1.2  # factor on the distance of rviz's initial view
 BACKGROUND = "#3a3f47"
 WRITERS = {".webp": ("img2webp", "webp"), ".mp4": ("ffmpeg", "ffmpeg")}  # program and package
 
@@ -73,8 +73,8 @@ class Launched:
 
 
 class Recorder:
-    """All that is shown goes into a bag: Python could not keep pace. Notes the moment that the scene is about: a hand is
-    seen, or the object is to be at a place."""
+    """Records everything that is shown into a bag, as Python would be too slow. Notes the main moment of the scene: a hand
+    appears, or the object is to be at a place."""
 
     def __init__(self, training, folder):
         self.moment, self.bag = None, os.path.join(folder, "shown.bag")
@@ -119,7 +119,7 @@ def record(scene, seconds, folder):
     if scene.view == "training":
         arguments.append("folder:=" + os.path.join(folder, "session"))
     if rospy.has_param("interaction_node"):
-        rospy.delete_param("interaction_node")  # of the scene before
+        rospy.delete_param("interaction_node")  # of the previous scene
     recorder = Recorder(scene.view == "training", folder)
     try:
         with Launched(arguments) as process:
@@ -147,7 +147,7 @@ def write_config(view, focus, size, file):
 
 
 def focus_on(shown):
-    """A place and a distance from which all of a run's hands are seen, and objects near them."""
+    """Focus and distance of a camera that sees all hands of a run, and objects near them."""
     palms = [hand.palm.position for _, topic, message in shown if topic == "rendered_view" for hand in message.rendered_hands]
     if not palms:
         return None
@@ -157,13 +157,13 @@ def focus_on(shown):
 
 
 def up_to_first_hand(shown):
-    """An empty scene has too few colours to tell that rviz has drawn it."""
+    """Skips to the first hand: an empty scene has too few colours to detect that rviz has drawn it."""
     first = next((k for k, (_, topic, message) in enumerate(shown) if topic == "rendered_view" and message.rendered_hands), 0)
     return shown[:first + len(TOPICS)]
 
 
 def draw(scene, begin, shown, options, folder, focus=None):
-    """Files of the pictures, one after the other."""
+    """Yields the files of the pictures."""
     files = []
     before, now = (os.path.join(folder, name) for name in ("before.ppm", "now.ppm"))
     with Stage(TOPICS) as stage, tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config:
@@ -189,7 +189,7 @@ def draw(scene, begin, shown, options, folder, focus=None):
 
 
 def finish(picture, caption, size, file):
-    """Half as large, with the caption, and without the mark."""
+    """Halves the size, adds the caption, and removes the mark."""
     width, height = (2 * int(number) for number in size.split("x"))
     mark = "rectangle %d,%d %d,%d" % (0.983 * width, 0.978 * height, width, height)
     subprocess.run(["convert", picture, "-fill", BACKGROUND, "-draw", mark, "-resize", size, "-font", FONT, "-pointsize", "13", "-fill", "#d0d4da", "-gravity",

@@ -9,7 +9,7 @@ import random
 import re
 
 REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-# The suites that are asked for each folder, those that are likely to notice first.
+# Suites for each folder, those that are likely to notice first.
 SUITES = {
     "math": "math rendering simulation",
     "text": "text scene training replay",
@@ -89,7 +89,7 @@ def mutants_of(line, previous):
 
 
 def lines_of(folders, repository=REPOSITORY):
-    """(file, number, line, what it may become) of every line that can be broken."""
+    """(file, number, line, mutants) of every line that can be broken."""
     found = []
     for folder in folders:
         for path in sorted(glob.glob(os.path.join(repository, "src", folder, "*.cpp"))):

@@ -25,15 +25,15 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 PROGRAMS = {"rviz": "rviz", "roscore": "python3-roslaunch", "Xvfb": "xvfb", "import": "imagemagick", "convert": "imagemagick"}
 MARKERS = ("markers", "training/markers")
 POSES = {"scene": SceneDescription, "rendered_view": RenderedView}  # in the order in which they are shown
-STARTED = 120.0  # s; by then the moment of a scene has come, and rviz has drawn
-DRAWN = 60.0  # s; by then a picture has, also on a busy machine
-BETWEEN = 0.1  # s, of two grabs that are to be the same
-TRIES = 10  # grabs of a scene until it is shown once more from its beginning
-TICKS = ((0, 255, 0), (255, 0, 255))  # of the corner that tells one picture from the next
+STARTED = 120.0  # s; limit for rviz to have started and drawn
+DRAWN = 60.0  # s; limit for a picture, also on a busy machine
+BETWEEN = 0.1  # s between two grabs that must be equal
+TRIES = 10  # grabs of a scene before it is shown again from its beginning
+TICKS = ((0, 255, 0), (255, 0, 255))  # colours of the mark in the corner, alternating from picture to picture
 
 
 def missing_tools():
-    """Packages of what is not there."""
+    """Packages of the programs that are missing."""
     return sorted({package for program, package in PROGRAMS.items() if not shutil.which(program)})
 
 
@@ -56,7 +56,7 @@ def free_port():
 
 
 class Started:
-    """Programs that end with this."""
+    """Programs that end with this context."""
 
     def __init__(self):
         self.processes = []
@@ -96,7 +96,7 @@ def start_screen(started, width, height):
 
 @contextlib.contextmanager
 def own_stage(name, width, height):
-    """A screen and a ROS master of our own, with us as a node."""
+    """A private screen and ROS master, with this process as a node."""
     missing = missing_tools()
     if missing:
         raise RuntimeError("rviz draws on a virtual screen, for which these packages are missing: " + " ".join(missing))
@@ -109,7 +109,7 @@ def own_stage(name, width, height):
 
 
 class Stage:
-    """Messages of some topics that rviz shows at a time."""
+    """Messages of some topics that rviz shows at one time."""
 
     def __init__(self, topics):
         self.publishers = {topic: rospy.Publisher(topic, POSES.get(topic, MarkerArray), queue_size=100, latch=topic == "scene")
@@ -144,7 +144,7 @@ class Stage:
         self.mark.publish(MarkerArray([tick]))
 
     def show(self, messages):
-        """The last of all poses and of each marker: it stays until the next picture, however long that takes."""
+        """Shows the last of all poses and of each marker, until the next picture."""
         last = {topic: collections.OrderedDict() for topic in MARKERS}
         views = []
         for _, topic, message in messages:
@@ -161,7 +161,7 @@ class Stage:
                 last[topic][marker.ns, marker.id] = marker
         if any(topic == "scene" for _, topic, _ in messages):
             self.publishers["scene"].publish(self.poses["scene"])
-        for message in views:  # each: an impact is in one frame
+        for message in views:  # all of them: an impact is in one frame only
             self.publishers["rendered_view"].publish(message)
         for topic, markers in last.items():
             if markers:
@@ -175,7 +175,7 @@ class Stage:
 
 
 def corners_of_mark(view, aspect):
-    """A triangle that fills the corner of what the orbiting view sees, at 0.1 m."""
+    """A triangle at 0.1 m that fills a corner of the orbiting view."""
     yaw, pitch = view["Yaw"], view["Pitch"]
     back = (math.cos(yaw) * math.cos(pitch), math.sin(yaw) * math.cos(pitch), math.sin(pitch))
     right = (-math.sin(yaw), math.cos(yaw), 0.0)
@@ -189,7 +189,7 @@ def corners_of_mark(view, aspect):
 
 
 def shows_tick(file, picture):
-    """The size of the picture tells nothing of rviz's frame: the mark is looked for in the corner."""
+    """Looks for the mark in the corner; the picture may include rviz's frame."""
     corner = subprocess.run(["convert", file, "-gravity", "southeast", "-crop", "4x4+2+2", "-depth", "8", "rgb:-"],
                             check=True, stdout=subprocess.PIPE).stdout
     wanted = TICKS[picture % 2]
@@ -197,7 +197,7 @@ def shows_tick(file, picture):
 
 
 def drawn(picture, before, now, process):
-    """Takes the screen's picture when its mark is there and it no longer changes."""
+    """Grabs the screen once it shows the mark and no longer changes."""
     deadline = time.monotonic() + DRAWN
     grab(before)
     while time.monotonic() < deadline and process.poll() is None:

@@ -24,13 +24,13 @@ MOMENTS = ("hand", "contact", "grasp", "done")
 VIEWS = {"front": (6.05, 0.5), "left": (3.9, 0.45), "right": (0.5, 0.6), "back": (2.2, 0.5), "top": (6.05, 1.3),
          "below": (6.05, -0.6)}
 LAYERS = ("hand", "ghost", "objects", "fixtures", "contacts", "friction", "forces", "impacts", "shadows", "text", "Grid")
-STOPPED = 3.0  # s for which a clock stands still where no bag is played any more
+STOPPED = 3.0  # s; a clock that stands still for so long belongs to a bag that is over
 FONT = os.path.join(rospkg.RosPack().get_path("rviz"), "ogre_media", "fonts", "liberation-sans", "LiberationSans-Regular.ttf")
 OFF_AT_FIRST = ("capsules", "newtons", "share")
 
 
 class Missed(Exception):
-    """A line why the moment has not come."""
+    """Error with one line: why the moment has not come."""
 
 
 def view(text):
@@ -80,7 +80,7 @@ def has_come(demo, options):
 
 
 class PlayedClock:
-    """Tells whether a bag is over: its clock has run, and has stopped."""
+    """Detects the end of a bag: its clock has run, and has stopped."""
 
     def __init__(self):
         self.last = None
@@ -128,8 +128,8 @@ def has_scene(file):
 
 
 def drawn_picture(rviz, size, output, complete, deadline):
-    """Whether rviz has drawn all that makes the picture complete and no longer changes it; its picture, at half the
-    screen's size, is then in the file."""
+    """True if rviz has drawn a complete picture and no longer changes it. The picture, at half the screen's size, is then in
+    the file."""
     with tempfile.TemporaryDirectory() as folder:
         before, now = os.path.join(folder, "before.png"), os.path.join(folder, "now.png")
         grab(before)
@@ -146,8 +146,8 @@ def drawn_picture(rviz, size, output, complete, deadline):
 
 
 def draw(options, focus, deadline, complete=has_scene):
-    """Starts rviz on the scene as it is, and ends it when its picture is taken. Once in many times rviz crashes as it
-    starts: then once more."""
+    """Starts rviz on the present scene, and ends it when its picture is taken. Repeats if rviz crashes at its start, which
+    happens rarely."""
     with tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config:
         write_config(options, focus, config)
         while time.monotonic() < deadline:

@@ -19,7 +19,7 @@ from mr_hand_interaction.msg import ObjectStateArray
 RATE = 10
 LOOKS = 10
 NODE = "/interaction_node"  # from the tracker's message to the picture, as playback.launch has it
-MOST_MEMORY, MOST_TIME = 1.05, 1.5  # against the first look; time is that of a machine with other things to do
+MOST_MEMORY, MOST_TIME = 1.05, 1.5  # ratio to the first check; times vary with the machine's load
 PAGE = os.sysconf("SC_PAGE_SIZE") / 1048576.0
 
 
@@ -30,7 +30,7 @@ def end(process):
 
 
 def soak(scenario):
-    """Calls scenario(hours, folder, start) beside a master and prints whether it was flat. Programs that it starts end with it,
+    """Calls scenario(hours, folder, start) beside a master and prints whether nothing grew. Ends the programs that it started,
     the last first. Returns the exit status."""
     folder, running = tempfile.mkdtemp(), []
     os.environ["ROS_LOG_DIR"] = os.path.join(folder, "log")
@@ -51,7 +51,7 @@ def soak(scenario):
     return 0 if is_flat else 1
 
 
-@functools.lru_cache()  # each query of a node opens one of its files for a while
+@functools.lru_cache()  # each query of a node opens a file in it for a while
 def process_of(node):
     return "/proc/%d/" % ServerProxy(rosgraph.Master("/soak").lookupNode(node)).getPid("/soak")[2]
 
@@ -67,7 +67,7 @@ def record(bag, start):
     """Two runs of the hand, with what comes before and after."""
     recorder = start("rosbag", "record", "-O", bag, "/leap_motion/leap_device")
     hand = start("rosrun", "mr_hand_interaction", "synthetic_hand_node", "_motion:=grasp_cube")
-    time.sleep(25)  # of the hand's own time
+    time.sleep(25)  # the hand plays in real time
     end(hand)
     end(recorder)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Keeps web.launch busy for hours: one browser sends a scripted hand at 60 Hz, one looks on, one comes and goes. Prints memory,
+"""Keeps web.launch busy for hours: one browser sends a scripted hand at 60 Hz, one watches, one comes and goes. Prints memory,
 open files and log of the nodes, and exits with 1 if any of them grows after the first tenth of the time."""
 import asyncio
 import csv
@@ -21,9 +21,9 @@ from soak_live import memory_and_files, soak
 
 RATE = 60
 VISIT = 10.0  # [s] that the third browser stays
-LOOK = 30.0  # [s] between two looks
+LOOK = 30.0  # [s] between two checks
 NODES = ('/web_door', '/interaction_node')
-GROWTH = 1.05  # of memory, against the largest of the first tenth
+GROWTH = 1.05  # largest ratio of memory to its maximum in the first tenth
 LOG_GROWTH = 100000  # bytes an hour, the same: for each of up to three reasons why frames are lost, a line a minute
 FINGERS = ('thumb', 'index', 'middle', 'ring', 'pinky')
 RADIUS = 0.008  # [m]

@@ -13,7 +13,7 @@ def result_files(folder):
 
 
 def test_cases(file):
-    """Results of a file as (name, outcome, what was said of it)."""
+    """Results of a file as (name, outcome, message)."""
     suite = os.path.splitext(os.path.basename(file))[0]
     try:
         root = ElementTree.parse(file).getroot()
@@ -24,7 +24,7 @@ def test_cases(file):
         return [(suite, "failed", "an error before its first test")]
     named = [(f"{case.get('classname') or suite}.{case.get('name')}", *outcome(case)) for case in cases]
     if suite.startswith("rostest-"):
-        # rostest's account of tests that have results of their own; it matters where they have none, after a
+        # rostest's summary of tests with results of their own; it matters if they have none, after a
         # crash or for lack of time.
         named = [case for case in named if case[1] == "failed"]
     return named

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Watches a running demo until the hand has done what its motion is for, stops the simulation at that moment, takes
-rviz's picture of it and writes a summary beside it. Exits with 0 if it was done in time, else with 1."""
+"""Watches a running demo until the motion has succeeded, pauses the simulation at that moment, takes rviz's picture and
+writes a summary beside it. Exits with 0 if it succeeded in time, else with 1."""
 import argparse
 import hashlib
 import math
@@ -19,14 +19,14 @@ from mr_hand_interaction.msg import ContactArray, HandFrame, InteractionEvent, O
 from std_srvs.srv import SetBool, Trigger, TriggerResponse
 
 STRIKES = ("nudge", "tap", "slap")
-TURNS = ("press_button", "flip_switch", "turn_valve", "pull_lever", "squeeze_tongs")  # hardly move from their place
-CARRIED = 0.04  # m from where it was taken: clearly so in the picture
+TURNS = ("press_button", "flip_switch", "turn_valve", "pull_lever", "squeeze_tongs")  # the object hardly moves
+CARRIED = 0.04  # m from its place, so that the picture shows it clearly
 STRUCK = 0.01  # m
 PUSHED = 0.004  # m, as a button is
 TURNED = 0.25  # rad
-SEEN_STRUCK = 0.03  # m: clearly so in the picture
+SEEN_STRUCK = 0.03  # m, so that the picture shows it clearly
 COLOURS = 500  # fewer: rviz has not drawn the scene yet
-STEADY = 3  # pictures alike, one after the other: rviz has drawn what there is
+STEADY = 3  # successive equal pictures: rviz has drawn everything
 BETWEEN = 0.7  # s between them
 STATUS_BAR = 40  # rows of pixels in which rviz counts its pictures per second
 
@@ -51,8 +51,8 @@ class Demo:
         self.grasped = set()
         self.most_contacts = 0
         self.objects = {}
-        self.still = False  # as it was in the message before
-        self.start = {}  # where things were before they were taken, since the run began
+        self.still = False  # unchanged since the message before
+        self.start = {}  # positions of objects before they were grasped in this run
         self.run_began = rospy.Time()
         self.last_event = None
         rospy.Subscriber("hand_frame", HandFrame, self.take_frame, queue_size=100)
@@ -158,7 +158,7 @@ def without_status_bar(file):
 
 
 def take_picture(file, deadline):
-    """Whether the screen shows more than an empty window, and no longer changes; its picture is in the file anyway."""
+    """True if the screen shows more than an empty window, and no longer changes. Its picture is in the file in any case."""
     alike, before = 0, None
     while alike < STEADY:
         grab(file)
@@ -172,8 +172,8 @@ def take_picture(file, deadline):
 
 
 class Moment:
-    """The moment for the picture: the simulation stands still, and the next run of the hand, which begins with a reset
-    by the service of this node, does not begin."""
+    """The moment of the picture: pauses the simulation, and prevents the hand's next run, which would begin with the reset
+    service of this node."""
 
     def __init__(self, demo):
         self.come, self.demo = False, demo
@@ -191,7 +191,7 @@ class Moment:
             return answer
 
     def stop(self, what, deadline):
-        """Whether what is to be seen is there still, now that nothing moves."""
+        """Pauses the simulation. If `what` no longer holds in the state that is then reached, resumes it and returns false."""
         with self.lock:
             self.pause(True)
             self.demo.wait_for(lambda: self.demo.still, deadline)  # what was sent before has come

@@ -1,12 +1,12 @@
-// Draws what web_door sends, in world: x and y level, z up, metres. scripts/web/picture.py says what the numbers are.
+// Draws the messages of web_door, in world: x and y horizontal, z up, metres. scripts/web/picture.py defines the numbers.
 
 import * as THREE from './three/build/three.module.js';
 
-const LENGTH = 1e-4, DIRECTION = 1e-3, FORCE = 1e-2; // of a whole number [m], [1], [N]
+const LENGTH = 1e-4, DIRECTION = 1e-3, FORCE = 1e-2; // value of one unit of an integer [m], [1], [N]
 const SKIN = new THREE.Color(0.90, 0.69, 0.57), TOUCHING = new THREE.Color(0.82, 0.25, 0.18);
-const STICKS = 0x009e73, SLIPS = 0xf0e442, STRUCK = 0xffffff; // by phase of a contact: Okabe and Ito's colours
+const STICKS = 0x009e73, SLIPS = 0xf0e442, STRUCK = 0xffffff; // colour by phase of a contact (Okabe & Ito)
 const PHASES = [STRUCK, STICKS, SLIPS];
-const LONGEST = 0.12, HALF = 3; // an arrow's length, and the force that has half of it [m], [N]
+const LONGEST = 0.12, HALF = 3; // maximum length of an arrow [m], and the force with half of it [N]
 const SHORTEST = 0.004, DOT = 0.0025, RING = 0.006; // [m]
 const LETTERS = 0.009; // height [m]
 
@@ -30,7 +30,7 @@ function material([r, g, b, a], options = {}) {
     depthWrite: a >= 1, ...options});
 }
 
-// Text that faces the eye. Its picture is drawn anew only when it says something else.
+// Text that faces the eye. It is drawn again only when it changes.
 class Label extends THREE.Sprite {
   constructor(height = LETTERS) {
     const canvas = document.createElement('canvas');
@@ -44,7 +44,7 @@ class Label extends THREE.Sprite {
     const context = this.canvas.getContext('2d'), size = 48, lines = text.split('\n');
     context.font = `${size}px sans-serif`;
     const width = Math.max(...lines.map((line) => context.measureText(line).width)) + 16;
-    this.canvas.width = THREE.Math.ceilPowerOfTwo(width); // so that it may be drawn small
+    this.canvas.width = THREE.Math.ceilPowerOfTwo(width); // needed for mipmaps
     this.canvas.height = THREE.Math.ceilPowerOfTwo(1.3 * size * lines.length);
     context.font = `${size}px sans-serif`;
     context.textAlign = 'center';
@@ -56,7 +56,7 @@ class Label extends THREE.Sprite {
       context.strokeText(line, this.canvas.width / 2, size * (1 + 1.3 * i));
       context.fillText(line, this.canvas.width / 2, size * (1 + 1.3 * i));
     });
-    this.material.map.dispose(); // of another size
+    this.material.map.dispose(); // the texture has another size
     this.material.map.needsUpdate = true;
     this.scale.set(this.height * this.canvas.width / size, this.height * this.canvas.height / size, 1);
   }
@@ -73,7 +73,7 @@ function triangles(shape) {
   geometry.setAttribute('position', new THREE.BufferAttribute(bytes(shape.points || ''), 3));
   geometry.computeVertexNormals();
   let color = shape.color;
-  if (shape.colors) { // three.js knows no opacity of a corner: the first corner's is that of all
+  if (shape.colors) { // three.js has no opacity per vertex: the first vertex's counts for all
     const rgba = bytes(shape.colors), rgb = new Float32Array(rgba.length / 4 * 3);
     for (let i = 0; i < rgba.length / 4; ++i) rgb.set(rgba.subarray(4 * i, 4 * i + 3), 3 * i);
     geometry.setAttribute('color', new THREE.BufferAttribute(rgb, 3));
@@ -99,7 +99,7 @@ function capsule([radius, length]) {
   return new THREE.LatheBufferGeometry(outline, 24).rotateX(Math.PI / 2);
 }
 
-// A visualization_msgs/Marker or a capsule; null for a type that nobody sends.
+// A visualization_msgs/Marker or a capsule; null for a type that is not used.
 function drawn(shape) {
   let object = null;
   if (ROUND[shape.type]) {
@@ -133,8 +133,7 @@ function clear(group) {
   }
 }
 
-// One mesh of capsules that move, and of slabs between them: for each corner on which half of the unit capsule it is, and in
-// which direction.
+// One mesh of moving capsules and the slabs between them. Each vertex has its end of the unit capsule and its direction.
 class Capsules extends THREE.Mesh {
   constructor(count, slabs) {
     const around = 10, rows = 8, corners = [], indices = [];
@@ -166,7 +165,7 @@ class Capsules extends THREE.Mesh {
 
   begin() {
     this.used = this.usedSlabs = 0;
-    this.geometry.attributes.position.array.fill(0, 0, 24 * this.slabs); // a slab that is not used has no size
+    this.geometry.attributes.position.array.fill(0, 0, 24 * this.slabs); // unused slabs have no size
   }
 
   // The skin above and below, from one capsule to the next.
@@ -212,11 +211,11 @@ class Capsules extends THREE.Mesh {
   }
 }
 
-const THUMB = 1; // its metacarpal, which a Leap calls its proximal phalanx
+const THUMB = 1; // its metacarpal: a Leap reports it as the proximal phalanx
 const CAPSULES_OF_A_HAND = 30, SLABS_OF_A_HAND = 4, HANDS = 4, CONTACTS = 30;
-const WEB = 0.6; // of the index finger's metacarpal, along which the thumb's skin joins it
+const WEB = 0.6; // fraction of the index finger's metacarpal at which the thumb's skin joins it
 
-// Phalanges as they are, and the palm between the metacarpals of neighbouring fingers, round at its ends.
+// Phalanges as capsules, and the palm between the metacarpals of adjacent fingers, with round ends.
 function addHand(capsules, [, , , , phalanges]) {
   const metacarpals = [];
   for (const [which, ...rest] of phalanges) {
@@ -233,7 +232,7 @@ function addHand(capsules, [, , , , phalanges]) {
   }
 }
 
-// Where a hand and an object meet: a dot, a ring on the surface, an arrow for the force and its newtons.
+// A contact of a hand and an object: a dot, a ring on the surface, an arrow for the force, and its value.
 class ContactMark extends THREE.Group {
   constructor() {
     super();
@@ -249,7 +248,7 @@ class ContactMark extends THREE.Group {
     this.add(this.dot, this.ring, this.shaft, this.head, this.newtons);
   }
 
-  // numbered: whether the force has its newtons beside it.
+  // numbered: whether the value of the force is shown.
   show([x, y, z, nx, ny, nz, fx, fy, fz, phase], numbered) {
     const point = length([x, y, z]), normal = new THREE.Vector3(nx, ny, nz).multiplyScalar(DIRECTION);
     const force = new THREE.Vector3(fx, fy, fz).multiplyScalar(FORCE), newtons = force.length();
@@ -276,7 +275,7 @@ class ContactMark extends THREE.Group {
   }
 }
 
-// Darkens the rim of what an eye sees while the view moves: many people bear that better.
+// Darkens the edge of the view while it moves, which reduces motion sickness.
 export class Vignette extends THREE.Mesh {
   constructor() {
     super(new THREE.SphereBufferGeometry(0.1, 32, 20), new THREE.ShaderMaterial({
@@ -293,16 +292,16 @@ export class Vignette extends THREE.Mesh {
   // At an eye; speed and spin of the view [m/s], [rad/s].
   show(on, eye, {speed, spin}) {
     const wanted = on ? Math.min(1, speed / 0.5 + spin / 0.5) : 0, {strength} = this.material.uniforms;
-    strength.value += 0.05 * (wanted - strength.value); // slowly: a rim that flickers is worse than none
+    strength.value += 0.05 * (wanted - strength.value); // slowly, without flicker
     this.visible = strength.value > 0.01;
     this.matrix.copy(eye.matrixWorld);
     this.matrixWorldNeedsUpdate = true;
   }
 }
 
-const AVERAGED = 250; // over which speed and spin are read [ms]
+const AVERAGED = 250; // period over which displayed speed and spin are averaged [ms]
 
-// The frame in which an operator's hands and headset are tracked, which moves.
+// The moving frame in which an operator's hands and headset are tracked.
 class Carrier {
   constructor(group, origin) {
     Object.assign(this, {group, origin, past: [], motion: {speed: 0, spin: 0}});
@@ -323,23 +322,23 @@ class Carrier {
   }
 }
 
-const READ = ['instructions', 'timer', 'result']; // training's texts, which stand before rviz's eye
+const READ = ['instructions', 'timer', 'result']; // training's texts, which rviz shows in front of the camera
 
 export class Drawing {
   constructor() {
-    this.world = new THREE.Group(); // place it: everything is in it
+    this.world = new THREE.Group(); // parent of everything; move it to place the scene
     this.objects = new THREE.Group();
     this.training = new THREE.Group();
     this.hands = Array.from({length: HANDS}, () => new Capsules(CAPSULES_OF_A_HAND, SLABS_OF_A_HAND));
     this.contacts = Array.from({length: CONTACTS}, () => new ContactMark());
-    this.label = new Label(0.014); // for a headset, which sees no page
+    this.label = new Label(0.014); // for a headset, which does not show the page
     this.world.add(this.objects, this.training, ...this.hands, ...this.contacts, this.label);
     this.title = '';
     this.instructions = '';
-    this.changed = false; // there is something else to be seen
+    this.changed = false; // the view has changed
     this.bodies = new Map();
     this.carriers = []; // by operator; empty: hands are tracked in world
-    this.poses = new Map(); // latest entries, also of what has no shape yet
+    this.poses = new Map(); // latest entries, also of objects without a shape yet
     this.touching = false;
     this.frames = 0;
     this.frame([[], [], []]);
@@ -359,7 +358,7 @@ export class Drawing {
         if (object) group.add(object);
       }
       if (body.carries) this.carriers.push(new Carrier(group, length(body.carries)));
-      group.visible = !body.free; // until it is known where it is
+      group.visible = !body.free; // hidden until its pose is known
       if (!body.free) place(group, ...length(body.pose.slice(0, 3)).toArray(), ...body.pose.slice(3));
       this.objects.add(group);
       this.bodies.set(body.id, group);
@@ -399,18 +398,18 @@ export class Drawing {
     const forces = contacts.map(([, , , , , , x, y, z]) => Math.hypot(x, y, z)), largest = Math.max(...forces);
     this.contacts.forEach((mark, i) => {
       mark.visible = i < contacts.length;
-      if (mark.visible) mark.show(contacts[i], forces[i] > 0.5 * largest); // smaller ones would stand in each other's way
+      if (mark.visible) mark.show(contacts[i], forces[i] > 0.5 * largest); // numbers of smaller forces would overlap
     });
     for (const entry of objects) this.move(entry);
     for (const carrier of this.carriers) carrier.read(performance.now());
   }
 
-  // Whether it is known where everything is.
+  // True if all poses are known.
   get complete() {
     return this.bodies.size > 0 && this.objects.children.every((group) => group.visible);
   }
 
-  // A ball around the objects and training's places, in the view's axes.
+  // A sphere around the objects and training's places, in the view's axes.
   extent() {
     this.world.updateMatrixWorld(true);
     const box = new THREE.Box3().setFromObject(this.objects), ball = new THREE.Sphere(new THREE.Vector3(0, 0.25, 0), 0);

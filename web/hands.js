@@ -12,10 +12,10 @@ const NOT_TRACKED = 0, INFERRED = 1, TRACKED = 2;
 
 export class Hands {
   constructor() {
-    // As scripts/web/messages.py reads it: time [ms], x y z radius of each joint [m], how well each is tracked.
+    // As scripts/web/messages.py reads it: time [ms], x y z radius of each joint [m], tracking state of each.
     this.data = new ArrayBuffer(TIME_BYTES + NUMBERS_BYTES + COUNT);
     this.view = new DataView(this.data);
-    this.numbers = new Float32Array(this.data, TIME_BYTES, 4 * COUNT); // all browsers' machines are little-endian
+    this.numbers = new Float32Array(this.data, TIME_BYTES, 4 * COUNT); // browsers' machines are little-endian
     this.flags = new Uint8Array(this.data, TIME_BYTES + NUMBERS_BYTES, COUNT);
     this.there = false; // a device with hands, tracked or not
   }

@@ -1,14 +1,14 @@
-// The connection to web_door. Connects again when it is lost, and not after a refusal.
+// The connection to web_door. Reconnects when it is lost, but not after a refusal.
 
 const RETRY = 2000; // [ms]
 const REFUSED = 1008; // close code of a message that was not allowed
 
 export class Link {
-  // take: functions by kind of message (welcome, scene, training, frame, ping, person, refused); say(text): for the person.
+  // take: functions by kind of message (welcome, scene, training, frame, ping, person, refused); say(text): shows a message.
   constructor(take, say) {
     this.take = take;
     this.say = say;
-    this.unsent = 0; // frames of hands that were left out as the one before was still on its way
+    this.unsent = 0; // frames of hands that were dropped while the previous one was being sent
     this.connect();
   }
 
@@ -39,7 +39,7 @@ export class Link {
     if (this.open) this.socket.send(JSON.stringify(content));
   }
 
-  // Hands are left out while older ones wait: what arrives late helps nobody.
+  // Drops hands while older ones wait: late hands are useless.
   sendHands(data) {
     if (!this.open) return;
     if (this.socket.bufferedAmount > 0) {

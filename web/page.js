@@ -1,4 +1,4 @@
-// The page: a view with orbit and touch for lookers-on, and sessions of WebXR for headsets and phones.
+// The page: a view with orbit and touch controls for viewers, and WebXR sessions for headsets and phones.
 
 import * as THREE from './three/build/three.module.js';
 import {OrbitControls} from './three/examples/jsm/controls/OrbitControls.js';
@@ -20,10 +20,10 @@ const orbit = new OrbitControls(camera, renderer.domElement);
 stage.add(...lights(), drawing.world, grid, vignette);
 orbit.addEventListener('start', () => { turned = true; });
 drawing.world.matrixAutoUpdate = false;
-grid.position.y = 0.1; // where rviz has it
+grid.position.y = 0.1; // as in rviz
 eye.matrixAutoUpdate = false;
 let hold = '', people = 1, session = null, space = null, claimed = false, turned = false;
-let ridden = 0, rides = false, darkens = false; // the operator whom the view goes with, if it does
+let ridden = 0, rides = false, darkens = false; // the operator with whom the view moves, if it does
 
 function say(text) {
   element('message').textContent = text;
@@ -42,7 +42,7 @@ const link = new Link({
   },
   ping: ([, trip, offset, overtaken]) => {
     if (trip === null) return;
-    const ahead = offset - performance.timeOrigin / 1000; // of this device's clock: a page's time begins with the page
+    const ahead = offset - performance.timeOrigin / 1000; // offset of this device's clock; a page's time starts with the page
     const clock = offset === null ? '' : `, ROS's clock ${ahead < 0 ? '' : '+'}${ahead.toFixed(3)} s`;
     const late = link.unsent + overtaken, left = late ? `, left out to stay in time: ${late} of the hands' frames` : '';
     element('link').textContent = `round trip ${trip.toFixed(1)} ms${clock}${left}`;
@@ -53,7 +53,7 @@ const link = new Link({
 const hands = new Hands();
 const placing = new Placing((pose) => link.tell({place: pose}));
 
-// All objects, from the person's side and a little from above.
+// Shows all objects, from the person's side and slightly from above.
 function home() {
   const {center, radius} = drawing.extent();
   orbit.target.copy(center);
@@ -80,7 +80,7 @@ function carrier() {
   return drawing.carriers[ridden % drawing.carriers.length];
 }
 
-// World as it is seen from the operator's frame.
+// The world in the operator's frame.
 function carried(world) {
   const by = carrier();
   return by ? world.multiply(new THREE.Matrix4().getInverse(by.matrix)) : world;
@@ -130,7 +130,7 @@ async function enter(mode) {
     return;
   }
   session.addEventListener('end', leave);
-  // A tap on a phone or a controller's trigger; a pinch is a select too, and is for objects.
+  // A tap on a phone or a controller's trigger. A pinch is a select event too, but is for objects.
   session.addEventListener('select', (event) => {
     if (!hands.there && event.inputSource.targetRayMode !== 'transient-pointer') placing.inFront();
   });
@@ -172,12 +172,12 @@ function drawXr(time, frame) {
   for (const view of viewer.views) drawView(view, layer.getViewport(view), by);
 }
 
-// Those without hands look on, and take nobody's place.
+// Viewers without hands do not count as people.
 function sendHands() {
   if (!hands.there) return;
   if (!claimed) link.tell({hands: true});
   claimed = true;
-  if (placing.grip) hands.forget(); // they hold the scene, and nothing in it
+  if (placing.grip) hands.forget(); // they move the scene, and hold no object
   link.sendHands(hands.data);
 }
 
@@ -208,7 +208,7 @@ element('leave').onclick = () => session.end();
 element('home').onclick = home;
 element('ride').onclick = () => { rides = !rides; element('ride').classList.toggle('on', rides); };
 element('vignette').onclick = () => { darkens = !darkens; element('vignette').classList.toggle('on', darkens); };
-element('buttons').addEventListener('beforexrselect', (event) => event.preventDefault()); // a tap on a button is no select
+element('buttons').addEventListener('beforexrselect', (event) => event.preventDefault()); // a tap on a button is not a select event
 window.addEventListener('resize', resize);
 if (navigator.xr) navigator.xr.addEventListener('devicechange', showButtons);
 home();

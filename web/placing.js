@@ -1,14 +1,14 @@
-// Where the scene is in a headset's space: in front of the person at first, then where it is placed.
+// The scene's pose in a headset's space: first in front of the person, then where it is placed.
 
 import {Matrix4, Quaternion, Vector3} from './three/build/three.module.js';
 import {INDEX_TIP, THUMB_TIP} from './hands.js';
 
-const AHEAD = 0.45, BELOW = 0.45; // of the scene's origin, from the eyes [m]: where a table would be
-const PINCH = 0.02, APART = 0.1; // between the tips of a pinch, and between two pinches [m]
-const HOLD = 1000; // both hands pinch for so long before they take the scene [ms]
-const MOVED = 0.002, TURNED = 0.003; // of an anchor, before the nodes are told [m], [rad]
-const PERIOD = 1000; // between two such messages [ms]
-export const Z_UP = new Matrix4().makeRotationX(-Math.PI / 2); // of world in a space with y up
+const AHEAD = 0.45, BELOW = 0.45; // of the scene's origin, relative to the eyes [m]: at the height of a table
+const PINCH = 0.02, APART = 0.1; // distance between the fingertips of a pinch, and between two pinches [m]
+const HOLD = 1000; // duration of a pinch with both hands that grabs the scene [ms]
+const MOVED = 0.002, TURNED = 0.003; // motion of an anchor that is reported to the nodes [m], [rad]
+const PERIOD = 1000; // minimum interval of such reports [ms]
+export const Z_UP = new Matrix4().makeRotationX(-Math.PI / 2); // rotation of world in a space with y up
 
 const ONE = new Vector3(1, 1, 1), UP = new Vector3(0, 1, 0);
 
@@ -34,12 +34,12 @@ export class Placing {
     this.told = new Matrix4();
     this.toldAt = 0;
     this.anchor = null;
-    this.wanted = true; // in front of the person, at the next frame
+    this.wanted = true; // place it in front of the person at the next frame
     this.pinchedSince = null;
-    this.grip = null; // while two hands hold the scene: from the hands to it
+    this.grip = null; // while two hands hold the scene: its pose relative to them
   }
 
-  // Of world in the headset's space.
+  // Pose of world in the headset's space.
   get world() {
     return this.scene.clone().multiply(Z_UP);
   }
@@ -48,9 +48,9 @@ export class Placing {
     this.wanted = true;
   }
 
-  // The space has another origin; transform: of the new one in the old, where the browser knows it.
+  // Handles a reset of the space's origin. transform: the new origin in the old space, if the browser knows it.
   reset(transform) {
-    if (this.anchor) return; // it says where the scene is
+    if (this.anchor) return; // the anchor defines the scene's pose
     if (!transform || !this.scene) return this.inFront();
     this.scene = inverse(new Matrix4().fromArray(transform.matrix)).multiply(this.scene);
     this.report(performance.now());
@@ -76,7 +76,7 @@ export class Placing {
     if (!frame.createAnchor || !(frame.session.enabledFeatures || []).includes('anchors')) return;
     const {position, turn} = parts(scene);
     const made = frame.createAnchor(new XRRigidTransform(position, turn), space);
-    made.then((anchor) => { this.anchor = anchor; }, () => {}); // without one the scene stays where the space says
+    made.then((anchor) => { this.anchor = anchor; }, () => {}); // without an anchor the scene is fixed in the space
   }
 
   followAnchor(frame, space, time) {
@@ -88,7 +88,7 @@ export class Placing {
     if (moved && time - this.toldAt > PERIOD) this.report(time);
   }
 
-  // The frame between two pinching hands; null if they do not both pinch.
+  // The frame between two pinching hands; null unless both pinch.
   between(hands) {
     const middles = [0, 1].map((side) => {
       const thumb = new Vector3().fromArray(hands.point(side, THUMB_TIP));
@@ -101,7 +101,7 @@ export class Placing {
     return upright(middles[0].lerp(middles[1], 0.5), -across.z, across.x);
   }
 
-  // Two hands that pinch in the air take the scene, and leave it where they open.
+  // Two hands that pinch in the air grab the scene, and release it when they open.
   followPinch(frame, space, hands, touching, time) {
     const held = this.between(hands);
     if (!held) {

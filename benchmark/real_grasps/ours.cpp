@@ -10,7 +10,7 @@
 namespace mrhi::real_grasps {
 namespace {
 
-constexpr double kFurthest = 1e3;       // no bounds: a lost body stays lost [m]
+constexpr double kUnbounded = 1e3;      // no bounds: a lost body stays lost [m]
 constexpr double kColumn = 0.5;         // height of the column under a resting body [m]
 constexpr double kColumnRadius = 0.02;  // [m]
 
@@ -26,7 +26,7 @@ Body column_under(const Row& row, const Pose& place) {
 Scene scene_of(const Row& row, const Closing& closing, const Configuration& configuration) {
   Scene scene;
   scene.name = row.name;
-  scene.bounds = {Vector3::Constant(-kFurthest), Vector3::Constant(kFurthest)};
+  scene.bounds = {Vector3::Constant(-kUnbounded), Vector3::Constant(kUnbounded)};
   scene.bodies.push_back(body_of(row, closing.place, default_material(configuration)));
   if (row.rests) {
     scene.gravity.z() = -9.81;

@@ -1,4 +1,4 @@
-"""Charts of an explanation, as SVG that stands in a page."""
+"""Charts of an explanation, as SVG for a page."""
 
 import io
 import re
@@ -22,13 +22,13 @@ FINGER_COLOURS = ('#d55e00', '#0072b2', '#009e73', '#cc79a7', '#e69f00', '#55555
 STATE_COLOURS = {'free': '#f0f0f0', 'contact': '#f3dfa2', 'hold': '#9fd6c2', 'slip': '#e69f00', 'drop': '#c5d3ea'}
 STICKS, SLIPS, ASSIST, SHADE = '#9fd6c2', '#f0e442', '#d7c4e8', '#eee3f5'
 GRASP_MARK, LOSS_MARK, JOINT_MARK, INK = '#009e73', '#d55e00', '#0072b2', '#333333'
-MAX_UTILISATION, MAX_BEARABLE = 2.0, 5.0  # what is above is cut off
+MAX_UTILISATION, MAX_BEARABLE = 2.0, 5.0  # larger values are cut off
 DRAWING = 2.35  # inches
 JOINT_EVENTS = ('JOINT_LIMIT', 'DETENT', 'LATCH_OPEN')
 
 
 class Chart:
-    """Curves over time: (colour, times, values). The axis reaches `top` at least, and `most` at most."""
+    """Curves over time: (colour, times, values). The axis ends between `top` and `most`."""
 
     def __init__(self, title, curves, top, most=None, lines=()):
         self.title, self.curves, self.top, self.most, self.lines = title, curves, top, most, lines
@@ -95,7 +95,7 @@ def drawn(charts, start, until, marks=(), shades=()):
 
 
 def _svg(figure):
-    """Without what a page does not need of a file of its own."""
+    """SVG without the header of a separate file."""
     FigureCanvasSVG(figure)
     text = io.StringIO()
     figure.savefig(text, format='svg')
@@ -178,7 +178,7 @@ def hand_charts(hand):
 
 
 def drawings(thing, hand, times):
-    """Hand and object in lines, from two sides, at these times."""
+    """Line drawings of hand and object at these times, from two sides."""
     figure = Figure(figsize=(2 * len(times) * (DRAWING + 0.05), DRAWING))
     for k, time in enumerate(times):
         i = thing.sample_at(time)

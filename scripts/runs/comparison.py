@@ -1,4 +1,4 @@
-"""When and where the objects of two runs part, and by how much."""
+"""When, where and by how much the objects of two runs diverge."""
 
 import collections
 import json
@@ -37,7 +37,7 @@ class Pair:
         self.differs = first['cells'][:count].to_numpy() != second['cells'][:count].to_numpy()
 
     def apart(self, tolerance):
-        """Frames in which they are: what is no number is apart."""
+        """Frames in which they differ; a value that is not a number differs."""
         if max(tolerance) <= 0.0:
             return self.differs
         return self.differs & ~((self.distance <= tolerance[0]) & (self.angle <= tolerance[1]))
@@ -70,7 +70,7 @@ def _angles(a, b):
 
 
 def paths_of(folder):
-    """{object: its rows, numbers and the text of all}."""
+    """{object: its rows as numbers, and their text}."""
     table = read_table(folder, 'objects.csv', MOTION)
     texts = read_table(folder, 'objects.csv', MOTION, as_text=True)
     table['cells'] = texts['time'].str.cat([texts[column] for column in MOTION[2:]], sep=',')

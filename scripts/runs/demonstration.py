@@ -1,5 +1,5 @@
-"""A run as a demonstration for those who go on with the data: objects, hands and events on one clock, in one CSV and in a bag
-of standard messages alone."""
+"""A run as a demonstration for further use: objects, hands and events at common times, as one CSV and as a bag with only
+standard messages."""
 
 import numpy
 import pandas
@@ -15,7 +15,7 @@ MIN_BONE = 1e-6  # m; some trackers give the thumb a metacarpal without length
 
 
 class Body:
-    """Poses of an object or a hand by frame, NaN where it is not there; of an object also wrench and held, of a hand bones."""
+    """Poses of an object or a hand by frame, NaN where it is missing; for an object also wrench and held, for a hand bones."""
 
     def __init__(self, count):
         self.pose = numpy.full((count, 7), numpy.nan)
@@ -43,7 +43,7 @@ class Body:
 
 
 def _slerp(a, b, t):
-    """The shortest way from one orientation to another."""
+    """The shorter rotation from one orientation to another."""
     dot = numpy.sum(a * b, axis=1)[:, None]
     angle = numpy.arccos(numpy.minimum(numpy.abs(dot), 1.0))
     near = numpy.abs(dot) >= 1.0 - numpy.finfo(float).eps

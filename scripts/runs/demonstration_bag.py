@@ -1,4 +1,4 @@
-"""Writes a demonstration as a bag of standard messages alone. To be imported where ROS's Python modules are."""
+"""Writes a demonstration as a bag with only standard messages. Needs ROS's Python modules."""
 
 import genpy
 import rosbag
@@ -18,7 +18,7 @@ def write_bag(demonstration, path):
 
 def _write_frame(demonstration, i, stamp, bag):
     time = genpy.Time(*divmod(stamp, 1000000000))
-    recorded = genpy.Time(*divmod(max(stamp, 1), 1000000000))  # no bag takes 0, with which a recording may begin
+    recorded = genpy.Time(*divmod(max(stamp, 1), 1000000000))  # a recording may begin at 0, which is not a valid time in a bag
     header, transforms = Header(stamp=time, frame_id='world'), []
 
     def write_pose(topic, name, pose):

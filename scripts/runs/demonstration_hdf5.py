@@ -1,4 +1,4 @@
-"""Writes a demonstration as HDF5 with the field names of LeRobot's data sets, for those who learn from it. Needs h5py."""
+"""Writes a demonstration as HDF5 with the field names of LeRobot's data sets, for robot learning. Needs h5py."""
 
 import json
 
@@ -11,7 +11,7 @@ JOINTS = ['wrist'] + ['%s_%d' % (finger, joint) for finger in ('thumb', 'index',
 
 
 def write_hdf5(demonstration, path):
-    """One episode. The state is what the hands do, the environment's what the objects do; the action is the state that follows."""
+    """Writes one episode. The state is that of the hands, the environment's state that of the objects; the action is the next state."""
     count, state, names = len(demonstration.stamps), [], []
     for side, body in demonstration.hands.items():
         state += [body.pose, keypoints(body.bones).reshape(count, -1)]

@@ -6,7 +6,7 @@ from .grip import FINGERS, utilisation
 from .losses import add_losses
 from .story import Story
 
-MAX_BEARABLE = 1e3  # times the load; more is none worth naming
+MAX_BEARABLE = 1e3  # times the load; larger factors are not shown
 
 
 def explained(run):
@@ -85,7 +85,7 @@ def _object(thing):
 
 
 def _stretches(thing):
-    """Times through which the object's state stays the same."""
+    """Spans of time in which the object's state stays the same."""
     parts = []
     for time, state in zip(thing.time, thing.state):
         if parts and parts[-1]['state'] == state:

@@ -10,9 +10,9 @@ from .tables import vectors
 PALM = 5
 FINGERS = ('thumb', 'index', 'middle', 'ring', 'little', 'palm')
 PATCH_TORQUE = 2.0 / 3.0  # lever of a round patch under even pressure, over its radius
-NO_LOAD = 1e9  # times the load, where there is none
+NO_LOAD = 1e9  # result without a load
 SCALE = 0.03  # m; length that weighs rotation against translation
-ITERATIONS = 150  # few gains after some dozens
+ITERATIONS = 150  # the gain is small after some dozens
 SHARPER, SHARPEST = 0.9, 1e-6  # regularisation of directions that hardly move: factor per iteration, minimum
 MIN_LOAD = 1e-9  # N
 MIN_SPAN = 1e-3  # m, between thumb and fingers, for a line through the grip
@@ -104,11 +104,11 @@ def margins(contacts, rows, position):
 
 
 def load_factor(rows, arm, normal, limit, lever, wrench):
-    """How many times each wrench friction could bear, force and torque together, with the normal forces as they are.
+    """Factor on each wrench (force and torque) up to which friction carries it with the present normal forces.
 
-    The upper bound theorem of plastic limit analysis (of grasps: Goyal, Ruina, Papadopoulos 1991): the least, over all
-    motions of the object, of the power that friction takes at most over the load's own. Found by iteration: friction's
-    power is replaced by a quadratic one that has its value and slope at the last motion."""
+    The upper bound theorem of plastic limit analysis (for grasps: Goyal, Ruina, Papadopoulos 1991): the minimum, over all
+    motions of the object, of the largest power of friction over the power of the load. Found by iteration: the power of
+    friction is replaced by a quadratic function with the same value and slope at the last motion."""
     places = pandas.Series(rows).groupby(rows).cumcount().to_numpy()
     shape = (len(wrench), places.max() + 1)
     slide = numpy.zeros(shape + (3, 6))  # velocity along the surface, from the motion

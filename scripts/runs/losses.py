@@ -1,4 +1,4 @@
-"""Finds what a hand had, or tried to have, and has no longer, and says why: the first cause that holds."""
+"""Finds each loss of a hold, or of an attempt to grasp, and its cause: the first that applies."""
 
 import collections
 import math
@@ -11,23 +11,23 @@ from .stay import Stay
 from .story import GRASP, KIND_OF_GRASP, KIND_OF_GRASP_END
 
 MIN_ATTEMPT = 0.1  # s; shorter touches are no attempts to grasp
-MIN_SLIDE = 0.02  # s; what all fingers do for a shorter time is their leaving
+MIN_SLIDE = 0.02  # s; a shorter slide of all fingers is part of their separation
 SLIPPERY = 0.4  # static friction below that of skin (docs/contact.md)
-MAX_FRICTION = 2.0  # that is worth naming
-SKIN_FRICTION = 0.8  # usual static friction of skin; what it would not have borne lacked normal force
+MAX_FRICTION = 2.0  # largest friction that a text recommends
+SKIN_FRICTION = 0.8  # usual static friction of skin; if it would not have sufficed, normal force was too low
 ASSIST_END = 0.15  # s; an assist that was active until this long before the end counts as ended
-MIN_SPEED_GAIN = 0.02  # m/s, of a touch that is told
-MAX_BREAK = 0.06  # s; touches that are apart by less are one stay
-BEFORE_LOSS = 0.15  # s; of a picture
+MIN_SPEED_GAIN = 0.02  # m/s; of a touch that is reported
+MAX_BREAK = 0.06  # s; touches with a shorter break are one stay
+BEFORE_LOSS = 0.15  # s from a picture to the loss
 SLIDE_MARGIN = 0.03  # s, by which an opening may begin after all fingers slide
 
-# An object that was held, or pressed by fingers, and is no longer. Times in s, forces in N.
+# The end of a hold, or of a contact of two fingers. Times in s, forces in N.
 Loss = collections.namedtuple(
     'Loss', 'object hand_id grasped start until cause push load friction friction_needed push_needed bearable opened by text '
     'grasp_end frame')
-# An object that was touched, never held, and left faster than it came.
+# A touch without a hold that made the object faster.
 PassingTouch = collections.namedtuple('PassingTouch', 'object hand_id start until fingers speed')
-# A moment of which a picture is drawn.
+# A moment for a picture.
 Moment = collections.namedtuple('Moment', 'what object time loss place palm across radius frame')
 
 
@@ -152,7 +152,7 @@ def _remedy(loss):
 
 def _story_of(loss, stay, why):
     text = '%s (%s from %.2f s) was %s at %.2f s: %s. %s%s' % (
-        loss.object, 'held' if loss.grasped else 'pressed', loss.start, 'let go' if loss.cause == 'hand_opened' else 'lost',
+        loss.object, 'held' if loss.grasped else 'pressed', loss.start, 'released' if loss.cause == 'hand_opened' else 'lost',
         loss.until, why, _slides_text(stay), _leaves_text(stay))
     assisted = evidence.assisted_in(stay)
     if assisted:
@@ -163,7 +163,7 @@ def _story_of(loss, stay, why):
 
 
 def _beside(delay):
-    """How the event lies to the last touch."""
+    """Time of the event relative to the last touch, as text."""
     if abs(delay) < 0.005:
         return 'with the last touch'
     if delay < 0.0:

@@ -1,4 +1,4 @@
-"""The page of an explanation: one HTML file that needs nothing else."""
+"""The page of an explanation: one HTML file that needs no other."""
 
 import os
 

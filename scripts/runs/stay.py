@@ -5,14 +5,14 @@ import math
 
 import numpy
 
-WINDOW = 0.6  # s before an object is let go, in which the cause is sought
-TRACKING_WINDOW = 0.5  # s; a hand may be kept that long after it was seen last
+WINDOW = 0.6  # s before the last touch in which the cause is sought
+TRACKING_WINDOW = 0.5  # s; a lost hand may keep its pose for so long
 IMPACT_WINDOW, IMPACT_MARGIN = 0.4, 0.02  # s before and after the last touch
-MIN_IMPACT = 0.05  # m/s; change of the object's speed by another that counts
+MIN_IMPACT = 0.05  # m/s; smallest change of speed by another object that counts
 IMPACT_REACH = 0.02  # m between bounding spheres; s of the change of speed
 MIN_OPENING = 0.003  # m; mean distance of the fingertips from their centre, over the stay
-MIN_BEGUN = 0.001  # m; of that, as the fingers still touch
-CLEAR = 0.1  # of the opening, since when the hand is open
+MIN_BEGUN = 0.001  # m; smallest opening while the fingers still touch
+CLEAR = 0.1  # fraction of the opening at which the hand counts as open
 CATCH = 0.03  # s; fingers that stick for a shorter time still slide
 SPAN = 0.02  # s before and after, for the palm's acceleration
 
@@ -50,7 +50,7 @@ def tracking_was_lost(stay):
 
 
 def strongest_impact(stay, story):
-    """Another object that no hand touches changed its velocity near this one; the one worth most, if any counts."""
+    """The strongest impact by an object that no hand touches, or None if none counts."""
     worst = Impact('', 0.0, 0.0)
     for name in sorted(story.objects):
         if name != stay.thing.name:
@@ -78,7 +78,7 @@ def _impact_by(stay, other, gravity):
 
 
 def opening_of(stay):
-    """Opening of a hand that had begun to open before the last touch, and continued."""
+    """Opening of a hand that began to open before the last touch, and continued."""
     hand, used = stay.hand, []
     for i in range(stay.window, stay.touched + 1):
         used += [touch.finger for touch in stay.touches(i) if touch.finger not in used]
@@ -106,7 +106,7 @@ def opening_of(stay):
 
 
 def faces_were_wrong(stay):
-    """Whether in most frames no two fingers could hold a body between them: each within the other's friction cone."""
+    """True if in most frames no two fingers could hold a body between them: neither was within the other's friction cone."""
     limit, good, bad = -math.cos(2.0 * math.atan(stay.thing.static_friction)), 0, 0
     for i in range(stay.window, stay.touched + 1):
         outward = [touch.outward for touch in stay.touches(i)]
@@ -118,10 +118,10 @@ def faces_were_wrong(stay):
 
 
 def slides_from(stay):
-    """First sample from which on all fingers slide to the end, short catches left out; the end if they do not."""
+    """First sample from which all fingers slide to the end, except for short catches; the end if they do not."""
     start = stay.touched
     for i in range(stay.touched, stay.window - 1, -1):
-        # The friction utilisation does not tell: assist, and edges, bear more than the limit.
+        # Not by the friction utilisation: assist and edges carry more than the limit.
         if all(touch.slips for touch in stay.touches(i)):
             start = i
         if stay.time(start) - stay.time(i) > CATCH:
@@ -130,12 +130,12 @@ def slides_from(stay):
 
 
 def carried_load(stay):
-    """The most that the fingers bore along the surfaces [N]: what hangs on a joint is not carried."""
+    """Largest tangential force that the fingers applied [N]; they do not carry a body on a joint."""
     return max(sum(touch.tangential for touch in stay.touches(i)) for i in range(stay.window, stay.touched + 1))
 
 
 def load_of(stay, gravity, start):
-    """The most that the fingers had to bear along the surfaces [N]: weight, and what it takes to accelerate the object."""
+    """Largest tangential force that the object required [N]: weight, and its acceleration."""
     most = 0.0
     for i in range(start, stay.touched + 1):
         touches = stay.touches(i)

@@ -17,7 +17,7 @@ Event = collections.namedtuple('Event', 'time kind object hand_id frame')
 
 
 class ObjectStory:
-    """An object's samples, one per frame in which it is there."""
+    """An object's samples, one per frame in which it exists."""
 
     def __init__(self, name, body, table, contacts):
         self.name = name
@@ -43,7 +43,7 @@ class ObjectStory:
         self.touches = grip.touches_of(held, held_rows, self.orientation)
         self.torque = grip.torques(held, held_rows, len(self.time))
         self.margin, self.bearable = grip.margins(held, held_rows, self.position)
-        self.impacts = [[] for _ in self.time]  # fingers that hit it and have left it again
+        self.impacts = [[] for _ in self.time]  # fingers that hit it and have separated
         self.impact_hand = {}  # hand, by sample
         hit = ~touching & vectors(contacts, ('jx', 'jy', 'jz')).any(axis=1)
         for row, finger, hand in zip(rows[hit], contacts['finger'][hit], contacts['hand_id'][hit]):
@@ -77,7 +77,7 @@ class ObjectStory:
 
 
 class HandStory:
-    """A hand's samples, one per frame in which it is there."""
+    """A hand's samples, one per frame in which it exists."""
 
     def __init__(self, hand_id, palms, phalanges):
         self.id = hand_id
@@ -116,7 +116,7 @@ class HandStory:
 
 
 class Story:
-    """All that is told of a run. Losses, touches and moments are added by losses.py."""
+    """The content of an explanation. losses.py adds losses, touches and moments."""
 
     def __init__(self, run):
         self.run = run

@@ -51,7 +51,7 @@ def read_table(folder, name, columns=None, as_text=False):
         try:
             return _read(path, columns, {column: _kind(column) for column in columns})
         except (ValueError, OverflowError):
-            pass  # read once more, to say what is no number and where
+            pass  # read again, to name the value that is not a number
     cells = _read(path, columns, str)
     if as_text:
         return cells
@@ -63,7 +63,7 @@ def _kind(column):
 
 
 def _read(path, columns, kinds):
-    """Raises ValueError for what is no number, RunError for what is no table."""
+    """Raises ValueError for a value that is not a number, RunError for a file that is not a table."""
     try:
         with program.open_regular(path, LARGEST_TABLE) as file:
             cells = pandas.read_csv(file, dtype=kinds, keep_default_na=False, float_precision='round_trip',
@@ -81,7 +81,7 @@ def _read(path, columns, kinds):
 
 
 def _numbers(path, cells):
-    """Numbers of a column; what is no number is named with its line."""
+    """Numbers of a column. Raises RunError that names a value that is not a number, with its line."""
     name = cells.name
     if name in MAY_BE_EMPTY:
         cells = cells.where(cells != '', 'nan')
@@ -99,7 +99,7 @@ def _numbers(path, cells):
 
 
 def read_summary(folder):
-    """summary.json as a dictionary that has what is read of it. Raises RunError."""
+    """summary.json as a dictionary with all keys that are read. Raises RunError."""
     path = os.path.join(folder, 'summary.json')
     try:
         summary = json.loads(program.read_text(path, LARGEST))
@@ -116,7 +116,7 @@ def read_summary(folder):
 
 
 def _fault_of(members, kinds):
-    """Empty: none."""
+    """Text of the fault, or empty."""
     if not isinstance(members, dict):
         return 'is not names with values'
     for name, kind in kinds.items():
@@ -166,7 +166,7 @@ def vectors(table, names):
 
 
 def write_text(path, text):
-    """Into a file, and nothing that is none. Raises RunError."""
+    """Writes to a regular file. Raises RunError."""
     if os.path.lexists(path) and not os.path.isfile(path):
         raise RunError('cannot write %s: it is no file; allowed: a file, or a free name' % path)
     try:

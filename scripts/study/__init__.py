@@ -1,1 +1,1 @@
-"""What analyse_study and ask_ratings are made of. docs/study.md describes the files and the statistics."""
+"""Modules of the scripts for studies. docs/study.md describes the files and the statistics."""

@@ -55,7 +55,7 @@ def analyse(data):
 
 
 class _Notes:
-    """One line for the same thing left out of the analysis of several measures."""
+    """Notes; one line if the same item is left out for several measures."""
 
     def __init__(self):
         self.measures = collections.OrderedDict()
@@ -74,7 +74,7 @@ class _Notes:
 
 
 def summary(values):
-    """n, mean, standard deviation and half the width of the mean's 95 % confidence interval; nan for want of data."""
+    """n, mean, standard deviation and half the width of the mean's 95 % confidence interval; nan without enough data."""
     values = np.asarray(values, float)
     sd = values.std(ddof=1) if len(values) > 1 else np.nan
     ci95 = stats.t.ppf(0.975, len(values) - 1) * sd / np.sqrt(len(values)) if len(values) > 1 else np.nan
@@ -82,7 +82,7 @@ def summary(values):
 
 
 def _analyse_objects(tables, notes, head, cells):
-    """Group and object, under one condition."""
+    """Analyses group and object under one condition."""
     for measure in measures_in(cells):
         of_measure = cells[cells['measure'] == measure]
         head_of = dict(head, measure=measure)
@@ -133,7 +133,7 @@ def _contrast(model, factor, at, a, b):
 
 
 def _add_any(table, head, family, between):
-    """Who had any at all: exact, also where all of one group had and none of the other."""
+    """Tests who had any at all; exact, also if all of one group had and none of the other."""
     rows = []
     for at, a, b, of_a, of_b in family:
         had_a, had_b = np.asarray(of_a) > 0, np.asarray(of_b) > 0
@@ -148,7 +148,7 @@ def _add_any(table, head, family, between):
 
 
 def _test_effects(tables, notes, head, factor, wide, cells):
-    """Of group, factor and both: nobody is left out for what is missing. Gives the mixed model, if there is one."""
+    """Tests group, factor and interaction without leaving out incomplete participants. Returns the mixed model, if any."""
     head = dict(head, within=factor)
     values = wide.values[~np.isnan(wide.values)]
     if len(values) < 2 or np.ptp(values) == 0:
@@ -181,7 +181,7 @@ def _test_effects(tables, notes, head, factor, wide, cells):
 
 
 def _add_permutations(table, head, factor, wide):
-    """Columns of `wide` are the factor's levels."""
+    """Adds permutation tests. Columns of `wide` are the factor's levels."""
     wide = wide.dropna(axis=1, how='all')
     labels = wide.index.get_level_values('group')
     of_groups = [(effect, permutation.several_groups, permutation.explained_by_groups, (labels, profile))
@@ -196,8 +196,8 @@ def _add_permutations(table, head, factor, wide):
 
 
 def _analyse_conditions(tables, notes, head, cells):
-    """Group and condition, each participant's mean over the objects, for who has a value of each; and pairs of
-    conditions, each participant's mean over the objects with a value under both."""
+    """Analyses group and condition by each participant's mean over the objects, for participants with all values; and pairs
+    of conditions by the mean over the objects with a value under both."""
     tested = cells['condition'].map(is_tested).astype(bool)
     for condition in in_order(cells[~tested]['condition'], CONDITIONS):
         notes.add(head, 'all measures', '%s was training: not compared with the other conditions' % condition)
@@ -229,8 +229,8 @@ def _analyse_conditions(tables, notes, head, cells):
 
 
 def _analyse_gravities(tables, notes, cells, source):
-    """Gravity within participants, under each condition, where the same people were at several: in `effects` and the
-    tables of pairs, gravity_g is empty."""
+    """Analyses gravity within participants under each condition, if the same people were at several. gravity_g is then empty
+    in `effects` and the tables of pairs."""
     for condition in in_order(cells['condition'], CONDITIONS):
         some = cells[cells['condition'] == condition]
         strengths = some.groupby('participant')['gravity_g'].nunique()
@@ -275,7 +275,7 @@ def _add_comparisons(table, head, family):
 
 
 def _test(tables, notes, head, factor, wide):
-    """The analysis of variance of those who have a value at every level, in groups of two or more."""
+    """Analysis of variance of the participants with a value at every level, in groups of two or more."""
     values = wide.values[~np.isnan(wide.values)]
     if len(values) > 1 and np.ptp(values) == 0:
         notes.add(head, head['measure'], 'every value is %g: nothing to test' % values[0])

@@ -7,13 +7,13 @@ from scipy import stats
 
 ALPHA = 0.05
 TRUST_HUYNH_FELDT = 0.75  # above this Greenhouse-Geisser epsilon (Girden 1992)
-ROUNDING = 1e-20  # of the sum of squares: less than this is no variation
+ROUNDING = 1e-20  # of the sum of squares: a smaller fraction counts as no variation
 
 # Mauchly's test and the estimates of epsilon; nan where the sample does not determine them.
 Sphericity = collections.namedtuple('Sphericity', 'w chi_squared df p greenhouse_geisser huynh_feldt')
 
 # A test of one effect; `name` is group, within or interaction. `p` is what to report: with the df multiplied by
-# `epsilon` if sphericity is violated, by `correction`; the other p-values are there whatever the test said.
+# `epsilon` if sphericity is violated, by `correction`; the other p-values are always given.
 Effect = collections.namedtuple('Effect', 'name ss df ss_error df_error f p epsilon correction p_uncorrected '
                                           'p_greenhouse_geisser p_huynh_feldt partial_eta_squared')
 
@@ -23,8 +23,8 @@ Anova = collections.namedtuple('Anova', 'effects sphericity n')
 def mixed_anova(values, groups):
     """`values`: a row for each participant, a column for each level; `groups`: a label for each row.
 
-    Groups of different sizes count alike in the test of the within factor (type III sums of squares). One group
-    or one level leaves out the effects that would need more. Raises ValueError where no error can be estimated.
+    Groups of different sizes have equal weight in the test of the within factor (type III sums of squares). With one
+    group or one level, effects that need more are left out. Raises ValueError if no error can be estimated.
     """
     values, groups = np.asarray(values, float), np.asarray(groups)
     if values.ndim != 2 or len(values) != len(groups) or not np.isfinite(values).all():
@@ -51,7 +51,7 @@ def mixed_anova(values, groups):
 
 
 def _orthonormal_contrasts(levels):
-    """Columns that are orthogonal to the mean and to each other; results do not depend on which."""
+    """Columns that are orthogonal to the mean and to each other; results do not depend on the choice."""
     basis, _ = np.linalg.qr(np.column_stack([np.ones(levels), np.eye(levels)[:, 1:]]))
     return basis[:, 1:]
 
@@ -92,7 +92,7 @@ def _choose_correction(sphericity, width):
         return 1.0, 'none'
     if sphericity.greenhouse_geisser > TRUST_HUYNH_FELDT:
         return sphericity.huynh_feldt, 'Huynh-Feldt'
-    return sphericity.greenhouse_geisser, 'Greenhouse-Geisser'  # also where the sample is too small for the test
+    return sphericity.greenhouse_geisser, 'Greenhouse-Geisser'  # also if the sample is too small for the test
 
 
 def _sphericity(residuals, df_error):
@@ -104,7 +104,7 @@ def _sphericity(residuals, df_error):
     if trace <= 0:
         return Sphericity(*[np.nan] * 3, np.nan, 1.0, 1.0)
     gg = min(1.0, trace ** 2 / (p * trace_of_square))
-    # Huynh and Feldt's estimate with the error's degrees of freedom (Lecoutre 1991), right for several groups too.
+    # Huynh and Feldt's estimate with the error's degrees of freedom (Lecoutre 1991), valid for several groups too.
     below = p * (df_error - p * gg)
     hf = min(1.0, max(gg, ((df_error + 1) * p * gg - 2) / below)) if below > 0 else 1.0
     return Sphericity(*_mauchly(covariance, df_error), gg, hf)

@@ -1,4 +1,4 @@
-"""The file that the answers go to."""
+"""The file of the answers."""
 
 import csv
 import io
@@ -7,14 +7,14 @@ import os
 from .session_folder import RATING_COLUMNS, StudyError, read_header, read_ratings
 
 class Answers:
-    """The answers of one participant about one condition, in the session's ratings.csv. Lines are only ever added, and
+    """The answers of one participant about one condition, in the session's ratings.csv. Lines are only appended, and
     are on the disk when `add` returns."""
 
     def __init__(self, folder, condition=None):
         header = read_header(folder)
         self.participant, self.condition = header['participant'], condition or header['condition']
         self.path = os.path.join(folder, 'ratings.csv')
-        self._read()  # refuses a file that could not be read later
+        self._read()  # refuses a file that later could not be read
 
     def _read(self):
         """Columns of the file, and this condition's scores by question."""
@@ -38,7 +38,7 @@ class Answers:
         return [question for question in asked if question not in given]
 
     def add(self, scores):
-        """`scores`: question to whole number; all go into the file in one write."""
+        """`scores`: question to whole number; all are written at once."""
         columns, _ = self._read()
         text = io.StringIO()
         writer = csv.writer(text, lineterminator='\n')

@@ -7,7 +7,7 @@ from .style import INK, PALE, colours, finish, new_figure, panel_title, save
 
 CAPTION = ('Bars: mean of the participants. Lines: 95 % confidence interval. Dots: participants. '
            'Mixed model or permutation, Bonferroni-corrected: * p < 0.05, ** p < 0.01, *** p < 0.001.')
-ROOM = 0.09  # of the axis, for each bracket above the bars
+ROOM = 0.09  # fraction of the axis for each bracket above the bars
 
 
 def draw_bars(results, cells, measures, title, folder, name):
@@ -46,8 +46,8 @@ def _draw_panel(axes, measure, bars, post_hoc, cells):
 
 
 def _aside(values, top):
-    """How far dots stand to the left or right of a bar's middle, in its widths: clear of the line there, and of dots
-    at almost the same height."""
+    """Horizontal offsets of dots from a bar's middle, in its widths, so that they are clear of the line there and of dots at
+    almost the same height."""
     _, level, sizes = np.unique(np.round(40 * values / max(top, 1e-9)), return_inverse=True, return_counts=True)
     rank = np.arange(len(values)) - np.searchsorted(level, level)  # among the dots of a level; values are sorted
     step = np.minimum(0.1, 0.33 / np.ceil(sizes[level] / 2))

@@ -1,4 +1,4 @@
-"""Who took part, as the paper tells: age, sex, handedness, experience with mixed reality; and their consent."""
+"""Participants, as in the paper: age, sex, handedness, experience with mixed reality; and their consent."""
 
 import collections
 import datetime
@@ -20,7 +20,7 @@ FIELDS = ('consent', 'consent_form', 'consent_time', 'age') + tuple(CHOICES)
 
 
 def ask(folder, form, again, read=input):
-    """Gives what is to be said at the end."""
+    """Asks the questions; returns the closing text."""
     who = read_header(folder)['participant']
     path = os.path.join(folder, FILE)
     if os.path.exists(path) and not again:
@@ -59,7 +59,7 @@ def _age(read):
 
 
 def of_folder(folder):
-    """What participant.yaml says, or nothing. Raises StudyError naming what is wrong in it."""
+    """Content of participant.yaml, or None. Raises StudyError that names a fault in it."""
     path = os.path.join(folder, FILE)
     if not os.path.exists(path):
         return None

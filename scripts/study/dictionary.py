@@ -1,4 +1,4 @@
-"""The data dictionary: what each column of each table means, with its unit and what it may be."""
+"""The data dictionary: meaning, unit and allowed values of each column of each table."""
 
 import pandas
 
@@ -59,7 +59,7 @@ COMMON = {
 
 
 def table(tables):
-    """For each column of `tables`, then for each measure and question."""
+    """Rows for each column of `tables`, then for each measure and question."""
     rows = []
     for name, frame in tables.items():
         rows += [dict(table=name, column=column, **_of(column)) for column in frame.columns]

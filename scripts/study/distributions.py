@@ -13,7 +13,7 @@ WORDS = {'naturalness': ('unnatural', 'natural'), 'efficiency': ('inefficient', 
 
 
 def draw_ratings(ratings, title, folder, name):
-    """A panel for each question, a row for each condition: how many gave each score, and the median."""
+    """A panel for each question, a row for each condition: the number of each score, and the median."""
     conditions = in_order(ratings['condition'], CONDITIONS)
     questions = [question for question in QUESTIONS if question in set(ratings['question'])]
     figure, panels = new_figure(len(questions), 4.6, 0.9 + 0.85 * len(conditions))

@@ -1,4 +1,4 @@
-"""How participants get better: over blocks (repetitions) and sessions, and what is left after a break."""
+"""Learning over blocks (repetitions) and sessions, and retention after a break."""
 
 import collections
 
@@ -17,7 +17,7 @@ SLOPES = ('source', 'gravity_g', 'condition', 'measure', 'test', 'scale', 'effec
 
 def blocks(trials):
     """A row for each participant, condition, session and block, with each measure's mean over the objects. `block`
-    counts on over the sessions."""
+    continues over the sessions."""
     parts = []
     keys = ['source', 'gravity_g', 'condition', 'group', 'participant', 'session_number', 'repetition']
     for measure in MEASURES:
@@ -48,7 +48,7 @@ def curves(table):
 
 
 def slopes(table):
-    """Of each condition and measure: the change with each doubling of the blocks (a power law of practice), and the change
+    """For each condition and measure: the change with each doubling of the blocks (a power law of practice), and the change
     from the last block of a session to the first of the next (retention). Times as ratios; counts by permutation."""
     rows = []
     for key, some in table.groupby(['source', 'gravity_g', 'condition', 'measure']):
@@ -67,7 +67,7 @@ def slopes(table):
 
 
 def _columns(some):
-    """(effect, rows, what goes up by 1 with it)."""
+    """(effect, rows, predictor that increases by 1)."""
     yield 'each doubling of blocks', some, np.log2(some['block'].values.astype(float))
     sessions = sorted(some['session_number'].unique())
     for before, after in zip(sessions, sessions[1:]):
@@ -84,8 +84,7 @@ def _contrasts(some, logarithm):
 
 
 def _of_counts(some):
-    """Each participant's own slope; without learning it could as well have been the opposite one. The interval is that of
-    resampled participants."""
+    """Each participant's slope; without learning, its sign is random. The interval is from resampled participants."""
     for effect, used, column in _columns(some):
         of_person = [_slope(column[rows], used['value'].values[rows])
                      for rows in used.reset_index(drop=True).groupby('participant').indices.values()]
@@ -138,7 +137,7 @@ def draw(table, title, source, folder, name):
 
 
 def of_people(table):
-    """{(participant, simulated): blocks}, for a page of each."""
+    """{(participant, simulated): blocks}, for the page of each."""
     people = collections.OrderedDict()
     for (participant, source), some in table.groupby(['participant', 'source']):
         people[participant, source] = some

@@ -1,11 +1,11 @@
-"""What a trial measures, what is shown of it, and from which trials it is taken."""
+"""The measures of a trial: how they are shown, and from which trials they are taken."""
 
 import collections
 
 COMPLETED = ('completed',)
-ENDED = ('completed', 'timed_out')  # a time says little of a trial that ran out of time; a count still does
+ENDED = ('completed', 'timed_out')  # for counts; times are taken from completed trials only
 
-# `kind` says by which tests: `time` by a mixed model of its logarithm, `amount` by one of itself, `count` by permutation.
+# `kind` chooses the tests: `time` by a mixed model of its logarithm, `amount` by one of itself, `count` by permutation.
 Measure = collections.namedtuple('Measure', 'name label unit trials kind')
 
 MEASURES = (
@@ -34,7 +34,7 @@ OBJECTS = ('cube', 'flat_cuboid', 'long_cuboid')
 CONDITIONS = ('implicit', 'seed', 'penetration', 'impulse', 'virtual_spring', 'soft_pad')
 
 
-TRAINING = '_training'  # ends the condition of a phase that is there to learn, and is not compared with the tested ones
+TRAINING = '_training'  # suffix of the condition of a training phase, which is not compared with the tested ones
 
 
 def is_tested(condition):
@@ -42,7 +42,7 @@ def is_tested(condition):
 
 
 def in_order(names, known):
-    """The known names first, in their order, then the others by the alphabet."""
+    """Known names first, in their order, then the others alphabetically."""
     return sorted(set(names), key=lambda name: (known.index(name) if name in known else len(known), name))
 
 

@@ -1,4 +1,4 @@
-"""The questions on a page that this machine serves to itself."""
+"""The questions on a page that is served to this machine only."""
 
 import collections
 import html
@@ -39,7 +39,7 @@ class Form(socketserver.ThreadingMixIn, http.server.HTTPServer):
     def __init__(self, answers, questions):
         super().__init__((LOCALHOST, 0), _Handler)
         self.answers, self.questions = answers, questions
-        self.token = secrets.token_urlsafe(16)  # a page from elsewhere cannot know it
+        self.token = secrets.token_urlsafe(16)  # which a page from elsewhere does not know
         self.lock, self.saved, self.error = threading.Lock(), False, None
 
     @property
@@ -47,7 +47,7 @@ class Form(socketserver.ThreadingMixIn, http.server.HTTPServer):
         return 'http://%s:%d/' % (LOCALHOST, self.server_port)
 
     def handle_error(self, *_):
-        """A browser that has gone is none."""
+        """Ignores the error if a browser has gone."""
         error = sys.exc_info()[1]
         if not isinstance(error, OSError):
             print('%s: %s' % (program.name(), program.line_of(error)), file=sys.stderr)
@@ -91,7 +91,7 @@ def page(title, body):
 
 
 def _checked(questions, fields):
-    """The valid scores, and what is wrong with the rest in a sentence."""
+    """The valid scores, and a sentence about the others."""
     chosen, wrong = collections.OrderedDict(), ''
     for question in questions:
         try:
@@ -115,7 +115,7 @@ def _fieldset(question, chosen):
 
 
 class _Handler(http.server.BaseHTTPRequestHandler):
-    timeout = 10  # [s] for a request that does not come
+    timeout = 10  # [s] for a request to arrive
 
     def do_GET(self):
         if self.path != '/':
@@ -142,7 +142,7 @@ class _Handler(http.server.BaseHTTPRequestHandler):
                 threading.Thread(target=self.server.shutdown).start()
 
     def _is_ours(self):
-        """A name of another's that leads to this machine is turned away."""
+        """Refuses requests under a foreign host name that leads to this machine."""
         ours = self.headers.get('Host') in ('%s:%d' % (name, self.server.server_port) for name in
                                             (LOCALHOST, 'localhost'))
         if not ours:

@@ -1,4 +1,4 @@
-"""Who does what when: balanced orders of conditions, days, and the command of each session."""
+"""The schedule: balanced orders of conditions, days, and the command of each session."""
 
 import collections
 import csv
@@ -15,7 +15,7 @@ MOST = 1000
 
 
 def rows(given):
-    """Raises ValueError saying what is allowed."""
+    """Rows of the plan. Raises ValueError that says what is allowed."""
     groups = [_group(text) for text in given.group]
     for name in given.condition + [given.task]:
         _name(name)
@@ -56,7 +56,7 @@ def _time(text):
 
 
 def _people(groups):
-    """Numbered through, groups in turn, so that time of the year is not that of a group."""
+    """Participants with numbers, groups in turn, so that groups do not differ in the time of the year."""
     left, people = collections.OrderedDict(groups), []
     while any(left.values()):
         for group in left:
@@ -67,7 +67,7 @@ def _people(groups):
 
 
 def _orders(people, given):
-    """Within each group all orders of a balanced square equally often, shuffled by the seed."""
+    """Orders of conditions: within each group, each order of a balanced square equally often, shuffled by the seed."""
     orders = {}
     for group in dict.fromkeys(group for _, group in people):
         some = [participant for participant, of in people if of == group]
@@ -87,7 +87,7 @@ def balanced_square(names):
 
 
 def _steps(given, group, order, day):
-    """Training comes first where the paper has it: veterans, with ours, on the first day."""
+    """Phases of a session. In the paper's procedure, veterans first train with our system, on the first day."""
     if given.procedure == 'paper' and group == 'veteran' and day == 1:
         yield 'training', order[0]
     for condition in order:
@@ -105,7 +105,7 @@ def _date(given, place, day, slots):
 
 
 def _row(given, participant, group, place, date, time, day, step, phase, condition):
-    # A training phase is a condition of its own, which the analysis does not compare with the tests.
+    # A training phase is a separate condition, which the analysis does not compare with the tests.
     named = condition + TRAINING if phase == 'training' else condition
     command = ('roslaunch mr_hand_interaction training.launch participant:=%s group:=%s contact_model:=%s condition:=%s '
                'task:=%s session:=%d number:=%d seed:=%d' % (participant, group, condition, named, given.task, day, place,

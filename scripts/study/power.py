@@ -1,4 +1,4 @@
-"""Power by drawing studies from a pilot's participants."""
+"""Power, by simulated studies with a pilot's participants."""
 
 import collections
 import re
@@ -18,7 +18,7 @@ SIZES = {'group': ('5v5', '10v10', '15v15', '20v20', '30v30'), 'condition': ('5'
 
 
 class Pilot:
-    """The participants from whom studies are drawn; what cannot be done with them is a ValueError."""
+    """The participants from whom studies are drawn. Raises ValueError for an analysis that they do not allow."""
 
     def __init__(self, given):
         self.given, self.cells = given, _cells(given)
@@ -33,7 +33,7 @@ class Pilot:
         self.sizes = [(size, _counts(size, given.effect)) for size in given.size or SIZES[given.effect]]
 
     def rows(self):
-        """(size, studies, found, percent, lower and upper limit of its exact 95 % interval), each as it is known."""
+        """(size, studies, found, percent, lower and upper limit of its exact 95 % interval), each as soon as it is known."""
         studies = self.given.studies
         for size, counts in self.sizes:
             found = sum(self._p(counts, i) < ALPHA for i in range(studies))
@@ -61,7 +61,7 @@ def _cells(given):
 
 
 def _with_ratio(cells, effect, levels, ratio):
-    """The levels' means made alike, then apart by `ratio`. Counts are thinned or repeated on the average."""
+    """Data with equal means of the levels, then scaled by `ratio`. Counts are thinned or repeated on average."""
     if not 0.01 <= ratio <= 100:
         raise ValueError('--ratio %g is not allowed; allowed: 0.01 to 100' % ratio)
     means = cells.groupby(effect)['value'].mean()
@@ -79,7 +79,7 @@ def _counts(size, effect):
 
 
 def _drawn(cells, effect, levels, counts, random):
-    """Participants with replacement; one drawn twice is two people."""
+    """Participants with replacement; one that is drawn twice counts as two people."""
     pools = ([list(dict.fromkeys(cells[cells['group'] == level]['participant'])) for level in levels]
              if effect == 'group' else [list(dict.fromkeys(cells['participant']))])
     of_person = dict(list(cells.groupby('participant')))

@@ -1,5 +1,5 @@
-"""What the scripts for users have in common: whatever befalls them, they end with at most one line that names the thing, and
-never with a traceback. To be imported before what takes long to import, where Ctrl-C is answered too."""
+"""Common parts of the scripts for users: every error ends a script with at most one line that names the cause, never with a
+traceback. Import this before slow modules, so that Ctrl-C during their import is handled too."""
 
 import argparse
 import errno
@@ -12,17 +12,17 @@ import sys
 import traceback
 import urllib.parse
 
-INTERRUPTED = 128 + signal.SIGINT  # what a shell says of a program that Ctrl-C has ended
+INTERRUPTED = 128 + signal.SIGINT  # a shell's status for a program that Ctrl-C has ended
 READER_GONE = 128 + signal.SIGPIPE
-PATIENCE = 5.0  # s, for a master's answer
+PATIENCE = 5.0  # s; limit for an answer of the master
 MEBIBYTE = 1 << 20
-BEGINNING, END = 300, 200  # letters that are told of a line with more
+BEGINNING, END = 300, 200  # characters shown of a longer line
 TRIED = 'MR_HAND_PYTHONS_TRIED'  # Pythons that have started this script, by their paths
 _tried = os.environ.pop(TRIED, '').split(os.pathsep)
 
 
 class OneLineParser(argparse.ArgumentParser):
-    """Bad usage is told in one line."""
+    """Reports bad usage in one line."""
 
     def error(self, message):
         self.exit(2, '%s: %s; --help shows the usage\n' % (self.prog, one_line(message)))
@@ -33,7 +33,7 @@ def name():
 
 
 def run(main, at_once=False):
-    """Calls it, and ends with the status that it gives: None is 0. `at_once`: threads of ROS would hold it up."""
+    """Calls `main`, and exits with the status that it returns; None is 0. `at_once`: does not wait for threads of ROS."""
     _print_what_cannot_be_encoded()
     try:
         code, line = main(), ''
@@ -52,7 +52,7 @@ def _print_what_cannot_be_encoded():
 
 
 def _end_of(error):
-    """Status, and what there is to be said."""
+    """Exit status and message of an exception."""
     if isinstance(error, KeyboardInterrupt):
         _leave(INTERRUPTED)
     if isinstance(error, SystemExit):
@@ -65,7 +65,7 @@ def _end_of(error):
 
 
 def _tell(code, line):
-    """The status, which is another one where what was printed cannot be written."""
+    """Prints the message; returns the status, which changes if the output cannot be written."""
     try:
         if sys.stdout is not None:
             sys.stdout.flush()
@@ -81,7 +81,7 @@ def _tell(code, line):
 
 
 def line_of(error):
-    """One line for what nobody has caught."""
+    """One line for an uncaught exception."""
     if isinstance(error, OSError) and error.filename is not None:
         return '%s: %s' % (error.filename, error.strerror)
     if isinstance(error, OSError):
@@ -96,13 +96,13 @@ def line_of(error):
 
 
 def one_line(text):
-    """Without what would break it, or make a terminal do things; of a long one its beginning and its end."""
+    """The text as one line without control characters; a long one is shortened in the middle."""
     text = ''.join(letter if letter.isprintable() else '?' for letter in text)
     return text if len(text) <= BEGINNING + END else text[:BEGINNING] + ' ... ' + text[-END:]
 
 
 def _silence():
-    """So that Python does not try to write out the rest once more as it ends."""
+    """Prevents Python from flushing the output again at its exit."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.close(nowhere)
@@ -128,8 +128,8 @@ sys.excepthook = _hook
 
 
 def missing(error, remedy='build, then source devel/setup.bash'):
-    """What to say of an ImportError. Before, starts the script again with each Python that may have the module: where pyenv or
-    conda is active, the first on PATH is not the one that ROS is installed for, or /usr/bin's is not."""
+    """Message for an ImportError. First restarts the script with each Python that may have the module: with pyenv or conda, the
+    first Python on PATH, or that in /usr/bin, may not be the one of ROS."""
     if sys.argv[0] and os.path.isfile(sys.argv[0]):
         for python in (os.path.join(os.environ.get('CONDA_PREFIX') or '/usr', 'bin', 'python3'), '/usr/bin/python3'):
             if python not in _tried and os.access(python, os.X_OK):
@@ -139,7 +139,7 @@ def missing(error, remedy='build, then source devel/setup.bash'):
 
 
 def find_built_modules():
-    """Those of the devel space that the scripts lie in, where no workspace has been sourced."""
+    """Finds the modules of this package's devel space if no workspace has been sourced."""
     package = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..'))
     modules = os.path.join(package, 'devel', 'lib', 'python3', 'dist-packages')
     if os.path.isdir(modules):
@@ -149,13 +149,13 @@ def find_built_modules():
 
 
 def read_text(path, most=64 * MEBIBYTE, encoding='utf-8'):
-    """Of a file, and of nothing that has no end. Raises OSError, or UnicodeDecodeError."""
+    """Text of a regular file. Raises OSError or UnicodeDecodeError."""
     with open_regular(path, most) as file:
         return file.read().decode(encoding)
 
 
 def open_regular(path, most=None):
-    """As open(path, 'rb') where it is a file of at most so many bytes; else OSError says what it is."""
+    """open(path, 'rb') for a regular file of limited size. Raises OSError that says what else it is."""
     descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     try:
         found = os.fstat(descriptor)
@@ -174,7 +174,7 @@ def _kind(mode):
 
 
 def why_no_master():
-    """One line; None: there is a master."""
+    """One line, or None if there is a master."""
     import rosgraph
     uri = rosgraph.get_master_uri()
     try:
@@ -188,7 +188,7 @@ def why_no_master():
     socket.setdefaulttimeout(PATIENCE)
     try:
         online = bool(rosgraph.Master('/' + name()).getPid())
-    except Exception:  # of a server that is none; rosgraph's own is_master_online would take Ctrl-C for one
+    except Exception:  # from another kind of server; rosgraph's is_master_online would also catch Ctrl-C
         online = False
     finally:
         socket.setdefaulttimeout(before)

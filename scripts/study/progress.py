@@ -37,7 +37,7 @@ def write_pages(blocks, output):
 
 
 def _free_name(text, taken):
-    """That a file can have, and no other of these has."""
+    """A valid file name that no other page has."""
     name = base = re.sub(r'[^A-Za-z0-9_.-]', '_', text)
     while name in taken:
         name = '%s_%d' % (base, len(taken))

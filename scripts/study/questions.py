@@ -1,4 +1,4 @@
-"""What participants are asked, and what is made of their answers: the paper's two questions, NASA-TLX and SUS."""
+"""The questions to participants and their scales: the paper's two questions, NASA-TLX and SUS."""
 
 import collections
 
@@ -38,12 +38,12 @@ SUS = collections.OrderedDict(
 
 SETS = collections.OrderedDict((('paper', PAPER), ('nasa_tlx', NASA_TLX), ('sus', SUS)))
 ALL = collections.OrderedDict(item for questions in SETS.values() for item in questions.items())
-HIGHEST_OF_OTHERS = 100  # of a question that is not among them
+HIGHEST_OF_OTHERS = 100  # highest score of any other question
 SCALES = collections.OrderedDict((('nasa_tlx', '0 to 100, less is better'), ('sus', '0 to 100, more is better')))
 
 
 def score_of(question, text):
-    """Raises ValueError saying what is allowed. A question that is not among these goes from 0 to 100."""
+    """The score in a text. Other questions have scores from 0 to 100. Raises ValueError that says what is allowed."""
     asked = ALL.get(question, Question('', '', '', 0, HIGHEST_OF_OTHERS))
     try:
         value = int(text)
@@ -61,7 +61,7 @@ def scale_of(question):
 
 
 def derived(scores):
-    """The scales of which all questions are answered: {'nasa_tlx': 45.0, 'sus': 72.5}."""
+    """The scales whose questions are all answered: {'nasa_tlx': 45.0, 'sus': 72.5}."""
     found = collections.OrderedDict()
     if all(name in scores for name in NASA_TLX):
         found['nasa_tlx'] = 100.0 * sum(scores[name] for name in NASA_TLX) / (TLX_STEPS * len(NASA_TLX))

@@ -1,4 +1,4 @@
-"""The report: one HTML file with the figures in it."""
+"""The report: one HTML file that includes the figures."""
 
 import base64
 import html
@@ -25,7 +25,7 @@ PAGE = '''<!DOCTYPE html>
 '''
 NO_PERSON = 'Simulated operators: no person took part. These figures describe a program that plays a person.'
 EFFECT_COLUMNS = ('Effect', 'Test', 'p', 'partial \u03b7\u00b2', 'Scale', 'n')
-MOST_FINDINGS = 6  # of one part; the tables have all
+MOST_FINDINGS = 6  # in one part; the tables have all
 ANOVA_COLUMNS = ('Effect', 'Test', 'p', 'partial \u03b7\u00b2', 'Correction')
 SPHERICITY_COLUMNS = ('Measure', 'W', 'Test', 'p', 'Greenhouse-Geisser \u03b5', 'Huynh-Feldt \u03b5')
 METHODS = '''<p>A participant's repetitions are averaged first. A missing trial costs no participant. Times (their logarithm)
@@ -100,7 +100,7 @@ def number(value, digits=3):
 
 
 def write_report(path, results, sessions, figures, notes):
-    """`figures`: (part, condition or None, kind) to the path of an SVG; in the order in which they are shown."""
+    """`figures`: (part, condition or None, kind) to the path of an SVG; in order."""
     report = Report('Study: %d sessions, %d participants' % (
         len(sessions), len({(s.participant, s.simulated) for s in sessions})) if sessions else 'Trajectories')
     if any(s.simulated for s in sessions):
@@ -154,7 +154,7 @@ def _sentence(row):
 
 
 def _gravities(report, results):
-    """Of participants who were at several gravities."""
+    """Section on participants who were at several gravities."""
     effects, pairs = (table[table['gravity_g'].isna()] for table in (results.effects, results.post_hoc))
     if len(effects) or len(pairs):
         report.heading('Gravity, within participants')

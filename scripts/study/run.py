@@ -14,8 +14,8 @@ from .study_data import HEAD, PEOPLE, SIMULATED, file_label, gather, label_of, m
 
 
 def run(folders, output, pairs, ask_r=False, objects=()):
-    """Gives the notes on what was left out. `pairs`: (raw, filtered) hands.csv to be drawn. `ask_r`: for its models too.
-    `objects`: trials of others are left out."""
+    """Writes everything; returns notes on omissions. `pairs`: (raw, filtered) hands.csv to draw. `ask_r`: also fits models
+    in R. `objects`: only trials with these."""
     sessions = [read_session(folder) for folder in find_sessions(folders)]
     sessions, notes_on_objects = _of_objects(sessions, objects)
     people, of_people, refused = demographics.table(sessions)
@@ -108,7 +108,7 @@ def _write_tables(output, data, results, notes, blocks, people, of_r):
 
 
 def _without_formulas(table):
-    """Texts come from files of others: after an apostrophe a spreadsheet shows them as they are."""
+    """Puts an apostrophe before texts that a spreadsheet would read as formulas: they may come from files of others."""
     def shown(value):
         return "'" + value if isinstance(value, str) and begins_a_formula(value) else value
     texts = [column for column in table.columns if table[column].dtype == object]
@@ -116,7 +116,7 @@ def _without_formulas(table):
 
 
 def _tidy(data):
-    """All values and answers, each in a row of its own."""
+    """All values and answers, one per row."""
     keys = [c for c in HEAD if c != 'handedness'] + ['session_number', 'period', 'trial', 'order', 'object', 'repetition',
                                                      'result']
     trials = data.trials.assign(completed=(data.trials['result'] == 'completed').astype(int))

@@ -1,4 +1,4 @@
-"""Reads session folders; docs/study.md has their format. What is wrong is said in one line with file and line."""
+"""Reads session folders; docs/study.md has their format. Errors are one line with file and line number."""
 
 import collections
 import csv
@@ -14,12 +14,12 @@ from .questions import score_of
 
 GRAVITY = 9.80665  # m/s^2
 LARGEST_YAML, LARGEST_TABLE = program.MEBIBYTE // 4, 256 * program.MEBIBYTE
-MOST = 10 ** 9  # of what is counted
+MOST = 10 ** 9  # largest count
 VERSION = 1
 RESULTS = ('completed', 'skipped', 'timed_out', 'aborted')
 RATING_COLUMNS = ('condition', 'question', 'score')
 
-# `gravity` is its strength in g. `trials` and `ratings` are lists of dicts; `notes` tells what was passed over.
+# `gravity` is its strength in g. `trials` and `ratings` are lists of dicts; `notes` names what was ignored.
 Session = collections.namedtuple('Session', 'folder participant group handedness condition gravity simulated '
                                             'session seed started trials ratings notes')
 
@@ -32,7 +32,7 @@ class StudyError(Exception):
 
 
 class _Loader(yaml.SafeLoader):
-    """Without aliases: a few of them are a text of any length."""
+    """Refuses aliases: a few of them can expand to a text of any length."""
 
     def compose_node(self, parent, index):
         if self.check_event(yaml.AliasEvent):
@@ -52,7 +52,7 @@ def name(text):
 
 
 def begins_a_formula(text):
-    """What a spreadsheet would compute in place of showing it. A number is none."""
+    """True if a spreadsheet would compute the text instead of showing it. A number is not a formula."""
     try:
         float(text)
         return False
@@ -69,7 +69,7 @@ def one_of(*allowed):
 
 
 def amount(text):
-    """None where nothing was measured."""
+    """A number, or None if nothing was measured."""
     if not text.strip():
         return None
     value = _number(float, text, 'a number')
@@ -109,7 +109,7 @@ TRIALS = collections.OrderedDict(
     [(column, amount) for column in ('path_length', 'grip_force_mean', 'grip_force_max', 'release_drift',
                                      'release_speed')] +
     [('tracking_losses', count)])
-# Of sessions since they are measured; before, grasps are the attempts, and these drops are counted in events.csv.
+# Columns of newer sessions. In older ones grasps are the attempts, and these drops are counted in events.csv.
 ADDED = collections.OrderedDict(
     [('grasps', count), ('manipulation_drops', count), ('touches', count)] +
     [(column, amount) for column in ('arrival_speed', 'misplacement', 'misalignment', 'operator_speed', 'operator_spin')])
@@ -119,7 +119,7 @@ RATINGS = collections.OrderedDict(zip(RATING_COLUMNS, (name, name, str)))
 
 
 def read_table(path, columns, notes, added=()):
-    """Rows as dicts of parsed values; further columns are passed over, and so is a last line cut off by a crash.
+    """Rows as dicts of parsed values; unknown columns, and a last line that a crash cut off, are ignored.
     `added`: columns that may be missing."""
     text = _text_of(path, LARGEST_TABLE, 'utf-8-sig')
     reader = csv.reader(io.StringIO(text, newline=''))
@@ -157,7 +157,7 @@ def read_yaml(path):
                                                             getattr(error, 'problem', None))) from None
     except RecursionError:
         raise StudyError('%s: is nested too deep' % path) from None
-    except Exception as error:  # of values that are not what they begin as: a date in month 13
+    except Exception as error:  # for invalid values, such as a date in month 13
         raise StudyError('%s: is not YAML: %s' % (path, error)) from None
     if not isinstance(said, dict):
         raise StudyError('%s: is not a list of keys with values' % path)
@@ -185,7 +185,7 @@ def _parse_row(path, line, cells, header, places):
 
 
 def read_ratings(path, notes):
-    """Rows with scores in the range of their question."""
+    """Rows, whose scores are in the range of their question."""
     rows = read_table(path, RATINGS, notes)
     for line, row in enumerate(rows, 2):
         try:
@@ -196,7 +196,7 @@ def read_ratings(path, notes):
 
 
 def read_header(folder):
-    """What session.yaml says, checked, as a dict."""
+    """Content of session.yaml, validated, as a dict."""
     path = os.path.join(folder, 'session.yaml')
     said = read_yaml(path)
     return {key: _checked(path, said, key, default, parse) for key, default, parse in HEADER}
@@ -270,7 +270,7 @@ def read_session(folder):
 
 
 def _add_counts(folder, trials, notes):
-    """What older sessions do not have in trials.csv."""
+    """Adds the columns of trials.csv that older sessions lack."""
     if trials and 'manipulation_drops' in trials[0]:
         return
     path, dropped = os.path.join(folder, 'events.csv'), None
@@ -283,7 +283,7 @@ def _add_counts(folder, trials, notes):
 
 
 def _as_begun(folder, trials, notes):
-    """The trials without those in which a parameter was another one than the session was begun with."""
+    """The trials without those in which a parameter differed from the start of the session."""
     path = os.path.join(folder, 'events.csv')
     spans = _changed_spans(read_table(path, CHANGES, [])) if trials and _has_columns(path, CHANGES) else []
     kept = []
@@ -306,7 +306,7 @@ def _has_columns(path, columns):
 
 
 def _changed_spans(events):
-    """(since, until, what) of each parameter that was not what it was at the beginning."""
+    """(since, until, parameter) of each change of a parameter until its restoration."""
     spans, now = [], {}
 
     def close(key, until):
@@ -335,7 +335,7 @@ def _check_trial_numbers(path, trials):
 
 
 def _last_answers(ratings, folder, notes):
-    """Whoever answers a question anew means the later answer."""
+    """Keeps the last answer to each question."""
     last = collections.OrderedDict(((row['condition'], row['question']), row) for row in ratings)
     if len(last) < len(ratings):
         notes.append('%s: %d answers replaced by later ones: left out'

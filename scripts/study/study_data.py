@@ -1,4 +1,4 @@
-"""All sessions together, checked against each other, as tables."""
+"""All sessions as tables, checked against each other."""
 
 import collections
 import os
@@ -10,11 +10,11 @@ from .questions import NASA_TLX, SUS, derived
 from .session_folder import ADDED, StudyError, TRIALS
 
 PEOPLE, SIMULATED = 'people', 'simulated operators, no person took part'
-PLACES = ['order', 'period', 'session_number']  # of a trial in its session, of the session among all, as it says
+PLACES = ['order', 'period', 'session_number']  # position of the trial in its session, and of the session among all
 HEAD = ['source', 'gravity_g', 'condition', 'participant', 'group', 'handedness']
 
 # `trials` and `ratings` as they were read, with HEAD before their own columns; `cells` has the mean over repetitions
-# of each measure for each participant, object and condition; `notes` tells what was left out and why.
+# of each measure for each participant, object and condition; `notes` says what was left out and why.
 StudyData = collections.namedtuple('StudyData', 'trials ratings cells notes')
 
 
@@ -38,7 +38,7 @@ def gather(sessions):
 
 
 def _with_scales(ratings):
-    """NASA-TLX and SUS in the place of their single questions."""
+    """Replaces single questions by the scores of NASA-TLX and SUS."""
     if ratings.empty:
         return ratings
     rows = []
@@ -51,14 +51,14 @@ def _with_scales(ratings):
 
 
 def _with_seeds(sessions):
-    """A simulated operator is another one with another seed."""
+    """Distinguishes simulated operators by their seeds."""
     if len({s.seed for s in sessions if s.simulated}) < 2:
         return sessions
     return [s._replace(participant='%s seed %d' % (s.participant, s.seed)) if s.simulated else s for s in sessions]
 
 
 def _periods(sessions):
-    """Of each session its place among those of its participant, from 1, by when they were started; nan: not known."""
+    """Position of each session among those of its participant, from 1, by start time; nan if unknown."""
     of_person = collections.defaultdict(list)
     for session in sessions:
         of_person[session.participant, session.simulated].append(session)
@@ -82,7 +82,7 @@ def _pooled(sessions, periods, table, columns):
 
 
 def _check_participants(sessions):
-    """One group for each participant; one folder for what a participant did in a condition."""
+    """Checks that each participant has one group, and one folder for each condition."""
     groups, folders = {}, {}
     for session in sessions:
         who = (session.participant, session.simulated)
@@ -127,7 +127,7 @@ def _cells(trials):
         means = means.assign(trials=of_cells.size()).reset_index()
         means.insert(len(keys), 'measure', measure.name)
         tables.append(means)
-    # Numbers where there is none either: pandas 1.1 takes no mean of what might be anything.
+    # Numeric type also for empty columns: pandas 1.1 computes no mean of objects.
     return pandas.concat(tables, ignore_index=True) if tables else pandas.DataFrame(
         columns=keys + ['measure', 'value'] + PLACES[:2] + ['trials']).astype({'value': float, 'trials': int})
 

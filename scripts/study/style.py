@@ -1,4 +1,4 @@
-"""What all figures share: colours that the colour-blind tell apart (Okabe and Ito), sizes, how they are written."""
+"""Common style of figures: colours for colour-blind readers (Okabe & Ito), sizes, output."""
 
 import os
 import textwrap
@@ -12,12 +12,12 @@ from .study_data import SIMULATED  # noqa: E402
 GROUP_COLOURS = {'beginner': '#E69F00', 'veteran': '#56B4E9'}
 DARK = {'beginner': '#8A5A00', 'veteran': '#00527A'}  # the same hues, dark enough for dots and text
 FURTHER = (('#009E73', '#005C43'), ('#CC79A7', '#7A3F60'), ('#F0E442', '#6B6400'), ('#D55E00', '#7F3800'))
-LETTERS, TITLE_LETTERS = 15, 12  # to the inch, of a caption and of a panel's title
+LETTERS, TITLE_LETTERS = 15, 12  # per inch, of a caption and of a panel's title
 PAGE_WIDTH = 9.7  # inches: the report's column, in which text of 9 points stays 9 points
 INK, PALE = '#222222', '#BBBBBB'
 RAW, FILTERED = '#D55E00', '#0072B2'
 
-# Sizes in points; texts stay texts in SVG; nothing in a file depends on when it was written.
+# Sizes in points; SVG keeps texts as texts; files do not depend on the time of writing.
 plt.rcParams.update({
     'font.size': 9, 'axes.titlesize': 10, 'axes.labelsize': 9, 'xtick.labelsize': 9, 'ytick.labelsize': 8,
     'axes.spines.top': False, 'axes.spines.right': False, 'axes.edgecolor': INK, 'text.color': INK,
@@ -27,7 +27,7 @@ plt.rcParams.update({
 
 
 def colours(groups):
-    """{group: (colour, dark one of the same hue)}; what has no colour of its own gets the next one, again and again."""
+    """{group: (colour, dark one of the same hue)}; groups without a fixed colour take the next ones in a cycle."""
     others = [group for group in groups if group not in GROUP_COLOURS]
     found = {group: (GROUP_COLOURS[group], DARK[group]) for group in groups if group in GROUP_COLOURS}
     found.update((group, FURTHER[i % len(FURTHER)]) for i, group in enumerate(others))
@@ -64,7 +64,7 @@ def finish(figure, title, caption, source):
 
 
 def save(figure, folder, name):
-    """Writes name.png and name.svg and gives the path of the SVG."""
+    """Writes name.png and name.svg; returns the path of the SVG."""
     os.makedirs(folder, exist_ok=True)
     path = os.path.join(folder, name)
     figure.savefig(path + '.png', metadata={'Software': 'matplotlib'})

@@ -4,7 +4,7 @@ from .questions import ALL, score_of
 
 
 def ask(answers, questions, read=input, write=print):
-    """Each answer is saved before the next question is asked. EOFError or KeyboardInterrupt ends it."""
+    """Asks the questions; saves each answer before the next question. EOFError or KeyboardInterrupt ends it."""
     for question in questions:
         asked = ALL[question]
         write('\n%s\n(%d: %s, %d: %s)' % (asked.text, asked.lowest, asked.low, asked.highest, asked.high))

@@ -22,7 +22,7 @@ Path = collections.namedtuple('Path', 'time position length')
 
 
 def read_path(file):
-    """The tip of the index finger [m] of the hand that is seen longest, of a hands.csv as replay writes it."""
+    """Path of the index fingertip [m] of the hand that is seen longest, from a hands.csv of replay."""
     table = _read_numbers(file)
     wanted = (table['finger'] == INDEX) & (table['bone'] == DISTAL) & (table['rendered'] == TRACKED)
     table = table[wanted]
@@ -33,7 +33,7 @@ def read_path(file):
 
 
 def _read_numbers(file):
-    """The columns that matter; these files have millions of lines. A last line that a crash cut off is left out."""
+    """The columns needed, as these files have millions of lines. A last line that a crash cut off is left out."""
     try:
         program.open_regular(file).close()
         table = pandas.read_csv(file, skipinitialspace=True, index_col=False)
@@ -67,7 +67,7 @@ def _path(time, position):
 
 
 def _excerpt(path, start, duration):
-    """From `start`, or earlier where the path ends too soon."""
+    """The path from `start`, or from earlier if it ends too soon."""
     start = max(min(start, path.time[-1] - duration), path.time[0])
     some = (path.time >= start) & (path.time <= start + duration)
     return _path(path.time[some], path.position[some])
@@ -128,7 +128,7 @@ def _draw_close_up(panels, paths, plane):
 
 
 def _shakiest(raw, filtered):
-    """Start of the CLOSE_UP seconds in which raw less filtered turns most: second differences leave out the lag."""
+    """Start of the CLOSE_UP seconds with the largest second differences of raw minus filtered, which exclude the lag."""
     smooth = np.column_stack([np.interp(raw.time, filtered.time, column) for column in filtered.position.T])
     steps = np.diff(raw.position - smooth, axis=0)
     steps[_gaps(raw.time)] = 0.0

@@ -16,7 +16,7 @@ LONGEST = 1800.0  # s
 
 
 def missing():
-    """What is not there of R and its packages; empty: nothing."""
+    """What is missing of R and its packages; empty if nothing."""
     program = shutil.which('Rscript')
     if program is None:
         return 'Rscript (r-base-core)'
@@ -44,7 +44,7 @@ def models(cells):
 
 
 def _long(cells):
-    """Counts of each condition by itself, and of all conditions together where there are several."""
+    """Counts of each condition, and of all conditions together if there are several."""
     cells = cells[cells['measure'].map(lambda name: OF[name].kind) == 'count']
     tested = cells[cells['condition'].map(is_tested).astype(bool)]
     several = tested[tested.groupby(['source', 'gravity_g'])['condition'].transform('nunique') > 1]

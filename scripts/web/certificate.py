@@ -1,11 +1,11 @@
-"""A certificate of this machine's own, made by openssl at the first start."""
+"""A self-signed certificate of this machine, made by openssl at the first start."""
 
 import hashlib
 import ipaddress
 import os
 import subprocess
 
-DAYS = 820  # phones refuse what is valid for more than 825
+DAYS = 820  # phones refuse certificates that are valid for more than 825
 RENEWED = 7 * 24 * 3600  # [s] before its end
 
 

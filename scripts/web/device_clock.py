@@ -1,14 +1,14 @@
-"""The clock of a browser beside the one of ROS."""
+"""Offset of a browser's clock to ROS time."""
 
 import collections
 
-SAMPLES = 20  # of which the one with the shortest round trip counts
-DRIFT = 1e-3  # how fast the offset follows [s/s]: more than clocks drift, and no frame changes places with the next
-STEP = 0.05  # [s]: an offset that is farther off is taken at once
+SAMPLES = 20  # the one with the shortest round trip counts
+DRIFT = 1e-3  # largest rate of the offset [s/s]: faster than clocks drift, too slow to reorder frames
+STEP = 0.05  # [s]: a larger change of the offset is applied at once
 
 
 class DeviceClock:
-    """Learns the offset as NTP does: a reply was given halfway between question and arrival, to half a round trip."""
+    """Estimates the offset as NTP does: a reply was sent halfway between question and arrival, to half a round trip."""
 
     def __init__(self):
         self._samples = collections.deque(maxlen=SAMPLES)

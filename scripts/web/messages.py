@@ -7,7 +7,7 @@ import struct
 JOINTS = 25  # of a hand in the WebXR order: wrist, thumb (4), index, middle, ring, little (5 each)
 SIDES = ('left', 'right')
 POINTS = JOINTS * len(SIDES)  # left, then right
-# Little-endian: the browser's time [ms]; x, y, z and the radius of each joint [m]; how well each is tracked
+# Little-endian: the browser's time [ms]; x, y, z and the radius of each joint [m]; tracking state of each
 HANDS = struct.Struct('<d%df%dB' % (4 * POINTS, POINTS))
 TRACKED = 2  # 0: not, with NaN as its place; 1: inferred from the others
 MAX_BYTES = 4096  # of a message

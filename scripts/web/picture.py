@@ -6,13 +6,13 @@ import json
 import math
 import time
 
-MAX_FRAME = 5000  # bytes: what does not fit comes with the next frame
+MAX_FRAME = 5000  # bytes: the rest is sent with the next frame
 MAX_CONTACTS = 30  # of a frame
-STALE = 0.5  # [s]: hands and contacts are gone if nobody publishes them any more
+STALE = 0.5  # [s]: older hands and contacts are dropped
 LENGTH, DIRECTION, FORCE = 1e4, 1e3, 1e2  # whole numbers are 0.1 mm, 0.001 and 0.01 N
 QUATERNION = 1e4
 SPHERE, BOX, CYLINDER, CAPSULE, MESH = range(5)  # SceneShape's types
-TYPES = 2, 1, 3, 'capsule', 11  # the marker's that looks the same
+TYPES = 2, 1, 3, 'capsule', 11  # the equivalent marker types
 GREY = 0.7, 0.7, 0.7, 1.0
 BONES = 4  # of a finger: a phalanx is finger * 4 + bone
 
@@ -62,7 +62,7 @@ def _scale(type_, size):
 
 
 def _shape(shape):
-    """A SceneShape as a marker, and a capsule by radius and length. A mesh's own materials do not cross: it is grey."""
+    """A SceneShape as a marker, and a capsule by radius and length. A mesh without a colour is grey: its materials are not sent."""
     c = shape.color
     placed = _placed(TYPES[shape.type], shape.pose, _scale(shape.type, shape.size), (c.r, c.g, c.b, c.a) if c.a > 0 else GREY)
     if shape.type == MESH:
@@ -93,7 +93,7 @@ def _text(kind, content):
 
 
 class Picture:
-    """The latest of everything. Callbacks of ROS write; the server reads."""
+    """The latest state of everything. Callbacks of ROS write it; the server reads it."""
 
     def __init__(self):
         self.scene = _text('scene', {'title': '', 'bodies': []})
@@ -127,7 +127,7 @@ class Picture:
                                            if marker.action == 0])
 
     def expire(self):
-        """Drops what a training_node that has ended showed."""
+        """Drops the marks of a training_node that has ended."""
         if self._training_time and time.monotonic() - self._training_time > STALE:
             self._training_time, self.training = 0.0, _text('training', [])
 
@@ -136,7 +136,7 @@ class Picture:
         self._hands = time.monotonic(), [_hand(hand) for hand in message.hands]
 
     def has_hands(self):
-        """Whether hands come, after which a frame is complete."""
+        """True if hands arrive; they complete a frame."""
         return time.monotonic() - self._hands[0] < STALE
 
     def take_contacts(self, message):

@@ -1,4 +1,4 @@
-"""Serves the page and speaks with its viewers. Knows nothing of ROS: what comes of a viewer is given to a Port."""
+"""Serves the page and communicates with its viewers. Independent of ROS: passes their messages to a Port."""
 
 import asyncio
 import collections
@@ -20,10 +20,10 @@ MAX_CONNECTIONS = 128  # of all viewers; a browser opens up to six for itself
 PATIENCE = 10.0  # [s]: for a handshake, for a request on a new connection, and for a sign of life
 FIRST_PINGS, FIRST_PERIOD, PERIOD = 8, 0.05, 0.5  # how often a viewer is asked for its time [s]
 UNSENT = 8192  # bytes: a viewer with more of them is slow, and waits for its next frame
-SETTLING = 0.2  # [s]: until all nodes know a new mount; so long the one before holds
+SETTLING = 0.2  # [s]: until all nodes know a new mount; the previous one holds until then
 LONGEST_SILENCE = 60.0  # [s] between two lines about refusals
-MAX_REASONS = 50  # that are counted apart between two lines
-STARVED = 1.0  # [s] after which a viewer is sent a frame though nothing moved
+MAX_REASONS = 50  # counted separately between two lines
+STARVED = 1.0  # [s] after which a viewer gets a frame even if nothing moved
 HEADERS = {'Cache-Control': 'no-store', 'Referrer-Policy': 'no-referrer', 'X-Content-Type-Options': 'nosniff',
            'Content-Security-Policy': "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data:"}
 
@@ -36,25 +36,25 @@ class Port:
         raise NotImplementedError
 
     def hands(self, person, stamp, frame, numbers, confidences):
-        """Joints as in messages.read_hands(); none: no hands."""
+        """Publishes joints as from messages.read_hands(); none: no hands."""
         raise NotImplementedError
 
     def mounts(self, transforms):
-        """All that hold: name of the frame, and its place in world."""
+        """Publishes all current mounts: name of the frame, and its pose in world."""
         raise NotImplementedError
 
     def viewers(self, count):
-        """How many there are now."""
+        """Reports the number of viewers."""
         raise NotImplementedError
 
     def say(self, line):
-        """To the log."""
+        """Writes to the log."""
         raise NotImplementedError
 
 
 class Refusals:
-    """Says why somebody was refused: the first time at once, then only how many times. The log stays small however long somebody
-    goes on: the time between two lines doubles, up to LONGEST_SILENCE, and is 1 s again after as long without a refusal."""
+    """Logs why requests were refused: the first at once, then only counts. The log stays small however long refusals continue:
+    the time between two lines doubles up to LONGEST_SILENCE, and is 1 s again after as long without a refusal."""
 
     def __init__(self, say):
         self._say, self._told, self._silence, self._untold = say, -math.inf, 1.0, collections.Counter()
@@ -92,7 +92,7 @@ class OneLine(logging.Handler):
 
 
 class TooMany(asyncio.Protocol):
-    """Answers a connection that is one too many."""
+    """Refuses a connection above the limit."""
 
     def connection_made(self, transport):
         line = 'too many connections; allowed: %d\n' % MAX_CONNECTIONS
@@ -107,7 +107,7 @@ class Mount:
 
     def __init__(self, person):
         self._person, self._count = person, 0
-        self.transforms = []  # the one that holds now, and the one before while that is needed
+        self.transforms = []  # the current one, and the previous one while it is needed
         self._settled = 0.0
 
     def clear(self):
@@ -130,8 +130,8 @@ class Viewer:
     def __init__(self, socket, transport):
         self.socket, self.transport = socket, transport
         self.clock, self.pings = DeviceClock(), {}
-        self.person, self.hands = None, None  # a place among those with hands; the newest hands, not published yet
-        self.last_stamp, self.left_out = 0.0, 0  # frames of hands that newer ones have overtaken
+        self.person, self.hands = None, None  # index among those with hands; the newest hands, not published yet
+        self.last_stamp, self.left_out = 0.0, 0  # frames of hands that newer ones replaced
         self.texts, self.sent = collections.deque(), {}
         self.news = asyncio.Event()
 
@@ -151,7 +151,7 @@ class Door:
         self._files = {name: os.path.join(folder, name) for name in PAGE}
         self._files.update(('three/' + name, os.path.join(three, name)) for name in THREE)
         self._asked = set()  # protocols that have made a request
-        self._shown = {}  # of what stays: text that viewers have
+        self._shown = {}  # persistent parts: the text that viewers have
         self._changed = asyncio.Event()
 
     async def start(self, address, port, context=None):
@@ -177,7 +177,7 @@ class Door:
         await self._runner.cleanup()
 
     def changed(self):
-        """The picture has. Call it in the server's own thread."""
+        """The picture has changed. Call in the server's thread."""
         self._changed.set()
 
     def _protocol(self):
@@ -256,7 +256,7 @@ class Door:
                 return
 
     def _take_hands(self, viewer, data):
-        """Publishes only the newest of several messages that arrived together: none waits behind another."""
+        """Publishes only the newest of several messages that arrived together, so none waits behind another."""
         hands = messages.read_hands(data)
         if viewer.hands is None:
             asyncio.get_running_loop().call_soon(self._publish_hands, viewer)
@@ -300,7 +300,7 @@ class Door:
         viewer.tell(person=viewer.person + 1)
 
     def _release(self, viewer):
-        """Tells the nodes at once that the hands have gone."""
+        """Reports to the nodes at once that the hands are gone."""
         if viewer.person is None:
             return
         person, viewer.person = viewer.person, None
@@ -333,7 +333,7 @@ class Door:
                     await asyncio.sleep(self._period)
                 await viewer.socket.send_str(self._picture.frame(viewer.sent))
         except (ConnectionError, RuntimeError):
-            pass  # it has gone: _listen() ends by itself
+            pass  # it is gone: _listen() ends by itself
 
     async def _show(self):
         """Wakes viewers when there is something new, no more often than they are to be shown it."""

@@ -31,9 +31,11 @@ std::string kind_of(const Scene& scene, std::size_t body) {
 }
 
 void print(const std::string& file, const Scene& scene) {
-  std::printf("%s: %zu bodies, %zu joints, gravity %s m/s^2, bounds %s to %s m\n", file.c_str(),
-              scene.bodies.size(), scene.joints.size(), text::vector(scene.gravity).c_str(),
-              text::vector(scene.bounds.min).c_str(), text::vector(scene.bounds.max).c_str());
+  const std::size_t bodies = scene.bodies.size(), joints = scene.joints.size();
+  std::printf("%s: %zu %s, %zu %s, gravity %s m/s^2, bounds %s to %s m\n", file.c_str(), bodies,
+              bodies == 1 ? "body" : "bodies", joints, joints == 1 ? "joint" : "joints",
+              text::vector(scene.gravity).c_str(), text::vector(scene.bounds.min).c_str(),
+              text::vector(scene.bounds.max).c_str());
   std::printf("  %-24s %-8s %10s %12s %26s %7s %8s %11s\n", "body", "kind", "mass [g]", "volume [cm3]",
               "extent x, y, z [mm]", "shapes", "friction", "restitution");
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {

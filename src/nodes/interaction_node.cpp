@@ -9,9 +9,9 @@ constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction interaction_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
 
 Subscribes to hand_frame, simulates the contact of the hands with the objects, and publishes rendered_view,
-rendered_hands, tracked_hands, objects, contacts, interaction_events, haptics, markers, /tf, simulation_input,
-/diagnostics.
-Services: ~reset, ~pause, ~spawn, ~delete, ~set.
+rendered_hands, tracked_hands, objects, contacts, interaction_events, haptics, haptics/joints, joint_states, scene,
+markers, /tf, simulation_input, /diagnostics. docs/messages.md describes them.
+Services: ~set, ~spawn, ~spawn_urdf, ~save, ~delete, ~reset, ~pause, ~restrain; ~tune (dynamic_reconfigure).
 
   ~scene              NAME|FILE; default cube
   ~fixed_frame        default world

@@ -15,16 +15,16 @@ using namespace mrhi;
 
 const char* const kHelp =
     "usage: simulated_study --output DIR [options]\n\n"
-    "Lets simulated operators (no person takes part) do a task, and writes a session's folder for each of\n"
-    "them, contact model and gravity: DIR/MODEL_Gg/PNN. Sessions that are there are gone on with, if their "
-    "task,\n"
-    "parameters, scenes, version and revision are the same.\n\n"
-    "  --operators FIRST-LAST   of those with these numbers; default 1-30\n"
+    "Lets simulated operators (no person takes part) do a task. Writes a session folder for each operator,\n"
+    "contact model and gravity: DIR/MODEL_Gg/PNN. Resumes the sessions that DIR has, if their task, "
+    "parameters,\n"
+    "scenes, version and revision are the same.\n\n"
+    "  --operators FIRST-LAST   numbers of the operators; default 1-30\n"
     "  --group-size N           the first N operators are beginners, all others veterans; default 15\n"
-    "  --model NAME             contact model; again for more; default: all\n"
-    "  --gravity G              in g, from 0 to 10; again for more; default: 0 and 1\n"
+    "  --model NAME             contact model; repeatable; default: all\n"
+    "  --gravity G              in g, from 0 to 10; repeatable; default: 0 and 1\n"
     "  --task NAME|FILE         default: pick_and_place\n"
-    "  --set KEY=VALUE          a parameter, as in config/default.yaml; again for more\n"
+    "  --set KEY=VALUE          a parameter, as in config/default.yaml; repeatable\n"
     "  --seed N                 a whole number; default 1\n"
     "  --free-hands             afloat, operators work without a hand on a rail\n";
 

@@ -66,7 +66,7 @@ Clearance& entry(const ContactKey& key, const Vector3& normal, std::vector<Clear
 
 constexpr int kMaxSweeps = 40;
 /// The solver has converged if no gap changes by more in a sweep [m].
-constexpr double kConverged = 1e-5;
+constexpr double kConvergedShift = 1e-5;
 /// Largest turn of a joint in one solution: rotations are linearised [rad].
 constexpr double kMaxTurn = 0.25;
 
@@ -98,7 +98,7 @@ class OffsetProblem {
     for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
       double largest = 0.0;
       for (Clearance& clearance : clearances_) largest = std::max(largest, relax(clearance));
-      if (largest < kConverged) return;
+      if (largest < kConvergedShift) return;
     }
   }
 

@@ -180,7 +180,8 @@ the machine allows and needs no ROS master.
                             PoseArray, PointCloud or HandFrame)
   --output DIR              folder of objects.csv, contacts.csv, hands.csv, events.csv, summary.json; created if it is
                             missing; default for a bag: FILE_replay
-  --topic TOPIC             of the bag; else what the live simulation took, /leap_motion/leap_device, /hands/[left/|right/]pose_array or point_cloud, or the only fitting
+  --topic TOPIC             of the bag; default: the topic of the live simulation, else /leap_motion/leap_device, else
+                            hands/[left/|right/]pose_array and point_cloud, else the only topic of a suitable type
   --params FILE.yaml        parameters, under the names of the parameter server
   --set KEY=VALUE           one parameter; overrides --params; repeatable
   --object-pose NAME,x,y,z,qx,qy,qz,qw

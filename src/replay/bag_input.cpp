@@ -58,8 +58,8 @@ ChildLimits limits_for(const std::string& file) {
   return {30 + static_cast<int>(error ? 0 : size / kSlowest), kMemory, kOutput};
 }
 
-/// Reads the whole bag in a child process first: the bag library takes every length in it on trust, says no
-/// more than that it cannot open a file, and a corrupt one may end the process. Throws BagError.
+/// Reads the whole bag in a child process first. The bag library trusts every length in a file, reports no
+/// cause of an error, and may end the process for a corrupt file. Throws BagError.
 void check_readable(const std::string& file) {
   const std::string why = why_unreadable(file);
   if (!why.empty()) throw BagError(file + ": " + why + "; allowed: a bag that may be read");
@@ -70,8 +70,8 @@ void check_readable(const std::string& file) {
   }
 }
 
-/// Within a handler: what the bag library has thrown, as a BagError in one line that names the file. Other
-/// exceptions go on as they are.
+/// Call within a handler. Rethrows an exception of the bag library as a BagError that names the file, and any
+/// other exception unchanged.
 [[noreturn]] void refuse_bag(const std::string& file) {
   try {
     throw;
@@ -148,14 +148,14 @@ const std::string& readable(const std::string& file) {
 const char* const kWorld = "world";
 const char* const kLeapFrame = "leap_hands";
 
-/// A frame that nothing places.
+/// Error of a frame without a pose in world.
 class NoTransform : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Poses of trackers in world: the given one, or by a bag's /tf_static and /tf as received before the hands.
-/// The Leap's own frame has a default mount.
+/// Poses of trackers in world: the given one, or from the bag's /tf_static and /tf received before the hands.
+/// The Leap's frame has a default mount.
 class DeviceFrames {
  public:
   DeviceFrames(const rosbag::Bag& bag, const std::optional<Pose>& device_in_world)
@@ -243,7 +243,7 @@ class BagInput : public FrameSource {
     });
   }
 
-  /// The topic's name from which a live node would derive the side.
+  /// The name of the topic in a live node, which determines the side.
   std::string stands_for(const std::string& recorded) const {
     for (const std::string& name : {recorded, recorded.substr(1)}) {
       if (const auto found = options_.topics.find(name); found != options_.topics.end()) return found->second;
@@ -280,8 +280,8 @@ class BagInput : public FrameSource {
     }
   }
 
-  /// The next messages, as far ahead as a stream's third is likely to be: only then it is known whether its
-  /// first one is of another clock.
+  /// Reads ahead until the third message of a stream, which shows whether the first has a stamp of another
+  /// clock.
   void look_ahead() {
     constexpr std::size_t kMessages = 12;
     while (at_ != view_.end() && ahead_.size() < kMessages) {
@@ -299,7 +299,7 @@ class BagInput : public FrameSource {
   std::string file_;
   rosbag::Bag bag_;
   std::set<std::string> topics_;
-  mutable rosbag::View view_;  // whose size() is not const
+  mutable rosbag::View view_;  // mutable: its size() is not const
   HandOptions options_;
   TrackerReader reader_;
   DeviceFrames devices_;

@@ -19,7 +19,8 @@ namespace mrhi {
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
-  /// Nothing at the end. Throws std::exception with one line if the recording cannot be read any further.
+  /// Returns the next frame; empty at the end. Throws std::exception with one line if the rest cannot be
+  /// read.
   virtual std::optional<SourceFrame> next() = 0;
   /// Number of messages read so far, and in all. The hands of a frame may be in separate messages.
   virtual std::size_t position() const = 0;
@@ -43,41 +44,41 @@ class CsvInput : public FrameSource {
   std::size_t position_ = 0;
 };
 
-/// A recording that is open, and the topic that is read of it.
+/// An open recording, and the topic that is read from it.
 struct ReplayInput {
   std::unique_ptr<FrameSource> frames;
   std::string topic;
 };
 
-/// Hands from topics of a bag: a tracker's message (ros/tracker_reader.h; of a right hand where neither topic
-/// nor frame names a side), or HandFrame in world. Without a topic: /leap_motion/leap_device, else those of
-/// joints, hands/[left/|right/]..., together, else the only one of a fitting type.
-/// Without a device pose: the bag's /tf_static and /tf at the frames' stamps, as live; the Leap's own frame
-/// has a default mount, hands in any other that nothing places are refused. Throws BagError; where this was
-/// built without ROS, UsageError.
+/// Opens a bag to read hands: messages of trackers (ros/tracker_reader.h; a right hand if neither topic nor
+/// frame names a side), or HandFrame in world. Default topic: /leap_motion/leap_device, else all topics of
+/// joints (hands/[left/|right/]...), else the only topic of a suitable type. Default device pose: from the
+/// bag's /tf_static and /tf at the frames' stamps, as live. The Leap's frame has a default mount; hands in
+/// any other unknown frame are rejected. Throws BagError, or UsageError in a build without ROS.
 ReplayInput open_bag(const std::string& file, const std::optional<std::string>& topic,
                      const std::optional<Pose>& device_in_world, const HandOptions& hands = {});
 
-/// The log of a live simulation, if the recording has one; else why not.
+/// The log of a live simulation, if the recording has one; else the reason why not.
 struct OpenLog {
   std::unique_ptr<LogSource> source;
   std::string topic, why_not;
 };
 
-/// Throws BagError.
+/// Opens the log of a recording. Throws BagError.
 OpenLog open_log(const ReplayArguments& arguments);
 
-/// A bag that cannot be replayed. what() is one line.
+/// Error of a bag that cannot be replayed. what() is one line.
 class BagError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Writes what viewers show.
+/// Writes the rendered view for viewers.
 class Pictures {
  public:
   virtual ~Pictures() = default;
-  /// After each frame; the first makes the file. Throws std::runtime_error naming it if it cannot be written.
+  /// Call after each frame. The first call creates the file. Throws std::runtime_error that names the file if
+  /// it cannot be written.
   virtual void watch(const Simulation& simulation) = 0;
 };
 

@@ -22,7 +22,7 @@ namespace {
 std_msgs::Header header_of(const Simulation& simulation) {
   std_msgs::Header header;
   header.frame_id = "world";
-  // No bag takes a stamp of 0.
+  // Bags have no stamp of 0.
   header.stamp = std::max(to_ros_time(simulation.result().stamp), ros::TIME_MIN);
   return header;
 }
@@ -37,7 +37,7 @@ visualization_msgs::MarkerArray markers_of(const Simulation& simulation) {
   return all;
 }
 
-/// rosbag play sends it to each viewer that comes later, too.
+/// Latched: rosbag play sends it to late subscribers, too.
 template <typename Message>
 void write_latched(rosbag::Bag& bag, const std::string& topic, const ros::Time& stamp,
                    const Message& message) {
@@ -50,7 +50,7 @@ void write_latched(rosbag::Bag& bag, const std::string& topic, const ros::Time& 
   bag.write(topic, stamp, message, connection);
 }
 
-/// Properties of a body that a change of the scene can change: its name and both frictions.
+/// Properties of a body that a change may alter: name and both frictions.
 using Look = std::tuple<std::string, double, double>;
 
 class MarkerBag : public Pictures {

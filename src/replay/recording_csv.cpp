@@ -11,8 +11,8 @@
 namespace mrhi {
 namespace {
 
-/// Where cells are apart by semicolons or tabs, as spreadsheets of some countries write them, a comma is the
-/// decimal point.
+/// If cells are separated by semicolons or tabs, as in some locales' spreadsheets, a comma is the decimal
+/// point.
 std::vector<std::string> split(std::string line, char separator) {
   while (!line.empty() && (line.back() == '\r' || line.back() == '\n')) line.pop_back();
   if (separator != ',') {
@@ -58,7 +58,7 @@ Side read_side(const CsvColumns& row) {
   return is_left == 1.0 ? Side::left : Side::right;
 }
 
-/// Nothing for -1: the frame has no hand.
+/// Empty for -1: the frame has no hand.
 std::optional<std::uint32_t> read_id(const CsvColumns& row) {
   const double id = row.required("hand_id");
   if (id == -1.0) return std::nullopt;

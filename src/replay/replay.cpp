@@ -155,12 +155,12 @@ class LogRun {
     run_.check_end();
   }
 
-  /// Also called for a run that ended early.
+  /// Also called after an early end.
   void end(const std::string& error) {
     if (!simulation_) return;
     run_.end(simulation(), error);
     const auto line = [&](const std::string& text) { run_.progress.line("replay: " + text); };
-    if (live().parts_at) line("parts from the live run at " + text::number(*live().parts_at) + " s");
+    if (live().diverges_at) line("diverges from the live run at " + text::number(*live().diverges_at) + " s");
     for (const std::string& what : live().overridden) line("not as recorded: " + what);
     for (const std::string& what : run_.summary.not_known) line("not known: " + what);
     if (live().missing > 0) line("the recording has lost " + std::to_string(live().missing) + " entries");
@@ -176,9 +176,9 @@ class LogRun {
 
   void take(const LogEntry& entry) {
     if (entry.kind == LogEntry::Kind::begin) return begin(entry);
-    if (!simulation_) return;  // before the recording's first beginning
+    if (!simulation_) return;  // before the first BEGIN
     if (entry.run != live_run_) {
-      broken_ = true;  // until it begins
+      broken_ = true;  // until the next BEGIN
       return;
     }
     if (entry.sequence <= sequence_) return;
@@ -276,7 +276,7 @@ class LogRun {
     if (broken_ || !overrides_.differing().empty()) return;
     ++live().compared;
     if (here == entry.state_hash) ++live().same;
-    if (here != entry.state_hash && !live().parts_at) live().parts_at = run_.seconds();
+    if (here != entry.state_hash && !live().diverges_at) live().diverges_at = run_.seconds();
   }
 
   const ReplayArguments& arguments_;
@@ -329,7 +329,7 @@ void leave_out(const std::vector<std::string>& hands, ReplayRun& run) {
 /// Predicts the next stamp by the recorder's clock, as the node does for live frames.
 struct RecordersClock {
   Nanoseconds last_stamp = 0;
-  std::optional<Nanoseconds> arrival;  // of the frame with the last stamp
+  std::optional<Nanoseconds> arrival;  // of the last frame
 
   std::optional<Nanoseconds> expected(const std::optional<Nanoseconds>& now) const {
     if (!arrival || !now) return std::nullopt;

@@ -59,7 +59,7 @@ Json json_of(const LiveRun& live) {
                  {"missing", live.missing},
                  {"compared", live.compared},
                  {"same", live.same},
-                 {"parts_at", live.parts_at},
+                 {"parts_at", live.diverges_at},
                  {"lost_by_queue", live.lost_by_queue},
                  {"changes", live.changes},
                  {"overridden", live.overridden}};
@@ -152,14 +152,14 @@ void ReplayRun::correct(const std::string& kind, const std::string& detail) {
 void ReplayRun::check_end() {
   if (summary.frames == 0) throw std::runtime_error(summary.input + ": no frame that can be used");
   writer_->flush();
-  // Mean time between frames of any tracker [s], and frames by which that is known.
-  constexpr double kShortest = 0.0003, kLongest = 0.5;
-  constexpr int kEnough = 20;
+  // Range of a tracker's mean interval [s], and number of frames that are needed to check it.
+  constexpr double kMinInterval = 0.0003, kMaxInterval = 0.5;
+  constexpr int kMinFrames = 20;
   const double interval = seconds() / std::max<double>(1.0, static_cast<double>(summary.frames) - 1.0);
-  if (summary.frames < kEnough || (interval > kShortest && interval < kLongest)) return;
+  if (summary.frames < kMinFrames || (interval > kMinInterval && interval < kMaxInterval)) return;
   progress.line("replay: " + summary.input + ": frames are " + text::number(interval) +
                 " s apart on average; usual: 0.001 to 0.1 s. Stamps are in seconds; are these " +
-                (interval > kLongest ? "milliseconds or microseconds?" : "1000 times too small?"));
+                (interval > kMaxInterval ? "milliseconds or microseconds?" : "1000 times too small?"));
 }
 
 void ReplayRun::end(const Simulation& simulation, const std::string& error) {

@@ -23,34 +23,34 @@ struct LiveRun {
   std::uint64_t missing = 0;            ///< entries that the recording has lost
   std::uint64_t compared = 0;           ///< entries after which the state was compared with the live one's
   std::uint64_t same = 0;               ///< of these, with the same hash
-  std::optional<double> parts_at;       ///< time of the first difference [s]
+  std::optional<double> diverges_at;    ///< time of the first difference [s]
   std::uint64_t lost_by_queue = 0;      ///< frames that did not reach the live simulation
-  std::vector<std::string> changes;     ///< that were made while it ran, with their time
-  std::vector<std::string> overridden;  ///< by the command line, so that this is another run
+  std::vector<std::string> changes;     ///< made while it ran, with their times
+  std::vector<std::string> overridden;  ///< options of the command line that make this a different run
 };
 
 /// Content of summary.json.
 struct ReplaySummary {
   std::string scene, input, topic, contact_model, version;
-  std::vector<std::string> arguments;             ///< that make the same run again
+  std::vector<std::string> arguments;             ///< that repeat this run
   Vector3 gravity = Vector3::Zero();              ///< [m/s^2]
-  std::map<std::string, std::string> parameters;  ///< that are not the default, as YAML
+  std::map<std::string, std::string> parameters;  ///< those that differ from the default, as YAML
   std::map<std::string, Material> materials;      ///< of the objects, by name
-  std::uint64_t frames = 0;                       ///< taken
+  std::uint64_t frames = 0;                       ///< accepted
   double simulated_seconds = 0.0;
   std::uint64_t steps = 0;
   DurationHistogram step_time;
   double deepest_rendered = 0.0;                   ///< [m]
-  std::uint64_t restarts = 0;                      ///< times that the recording's stamps began anew
+  std::uint64_t restarts = 0;                      ///< number of times that the recording's stamps restarted
   std::map<std::string, std::uint64_t> rejected;   ///< frames, by reason
-  std::map<std::string, std::uint64_t> corrected;  ///< faults of the input that were put right, by kind
-  std::uint64_t hands_left_out = 0;                ///< unusable hands in frames that were taken
+  std::map<std::string, std::uint64_t> corrected;  ///< corrected faults of the input, by kind
+  std::uint64_t hands_left_out = 0;                ///< unusable hands in accepted frames
   std::map<std::string, std::uint64_t> events;
   std::vector<std::string> held_at_end;
   std::uint64_t state_hash = 0;
   std::optional<LiveRun> live;         ///< if the recording has a log
-  std::vector<std::string> not_known;  ///< what affects the result and is not in the recording
-  std::string error;                   ///< why it ended early; empty if it did not
+  std::vector<std::string> not_known;  ///< what affects the result but is not in the recording
+  std::string error;                   ///< reason for an early end; empty if there was none
 };
 
 /// The summary as JSON. Everything except step_time_us is the same for the same input.
@@ -72,19 +72,19 @@ class ProgressBar {
   int percent_ = -1;
 };
 
-/// Base of replays of frames and of logs: takes frames, writes results and counts. The summary is complete at
-/// any time, so that it can be written if reading fails.
+/// Base of replays of frames and of logs: processes frames, writes results and counts them. The summary is
+/// complete at any time, so that it can be written if reading fails.
 class ReplayRun {
  public:
   ReplayRun(const ReplayArguments& arguments, const std::string& topic);
 
-  /// Begins a run, or begins again: creates the folder's tables, and sets scene and parameters of the
-  /// summary. Throws std::runtime_error naming what cannot be written.
+  /// Starts or restarts a run: creates the tables, and sets scene and parameters of the summary. Throws
+  /// std::runtime_error that names a file that cannot be written.
   void begin(const Simulation& simulation, const std::string& scene);
   /// The scene has changed.
   void follow(const Scene& scene) { writer_->follow(scene); }
-  /// Runs all steps of a frame and writes its result. Counts it as rejected if it is refused; `which`: its
-  /// place in the recording, for people.
+  /// Runs all steps of a frame and writes its result, or counts it as rejected. `which`: its place in the
+  /// recording, for messages.
   bool frame(const HandFrame& hands, const std::optional<Nanoseconds>& expected, const std::string& which,
              Simulation& simulation);
   /// Writes a result: of a frame, or of time without hands.
@@ -93,10 +93,10 @@ class ReplayRun {
   void reject(const std::string& reason, const std::string& detail);
   /// Counts a corrected fault of the input; the first of each kind is printed.
   void correct(const std::string& kind, const std::string& detail);
-  /// Throws std::runtime_error if no frame was taken, or if the disk does not take the tables.
+  /// Throws std::runtime_error if no frame was accepted, or if the tables cannot be written.
   void check_end();
-  /// Writes summary.json; `error`: why the run ended early, or empty. If it ended before its first frame,
-  /// removes the folders that it has made instead.
+  /// Writes summary.json. `error`: reason for an early end, or empty. If the run ended before its first
+  /// frame, removes the folders that it has created instead.
   void end(const Simulation& simulation, const std::string& error);
 
   bool writes_markers() const { return markers_ != nullptr; }
@@ -108,7 +108,7 @@ class ReplayRun {
 
  private:
   std::string output_;
-  std::string made_;  ///< the outermost folder that this run has made; empty: none
+  std::string made_;  ///< the outermost folder that this run has created; empty: none
   std::unique_ptr<ResultWriter> writer_;
   std::unique_ptr<Pictures> markers_;
   std::optional<Nanoseconds> first_stamp_, last_stamp_;
@@ -117,7 +117,7 @@ class ReplayRun {
 /// Runs all frames through the simulation.
 void run_frames(FrameSource& source, Simulation& simulation, ReplayRun& run);
 
-/// Repeats what a live simulation did. Throws as replay() does.
+/// Repeats a live simulation. Throws as replay() does.
 void replay_log(const ReplayArguments& arguments, LogSource& log, const std::string& topic);
 
 }  // namespace mrhi

@@ -28,8 +28,8 @@ void add_columns(const std::string& line, Table& table) {
                              line.substr(meaning + 1) + (vector ? std::string(", ") + name.back() : "")});
 }
 
-/// tables.txt: a line "FILE: what has a row", then one "name|unit|meaning" per column. Columns of a vector
-/// share a line: "px py pz|m|position" are "position, x" to "position, z".
+/// Parses tables.txt: a line "FILE: meaning of a row", then one "name|unit|meaning" per column. Columns of a
+/// vector share a line: "px py pz|m|position" are "position, x" to "position, z".
 std::vector<Table> tables_in(const std::string& text) {
   std::vector<Table> tables;
   std::istringstream lines(text);
@@ -58,7 +58,7 @@ std::string made_folder(const std::string& folder) {
   throw std::runtime_error("cannot make folder " + folder + (error ? ": " + error.message() : ""));
 }
 
-/// The highest level of any hand.
+/// The highest level of interaction with any hand.
 InteractionLevel level_of(std::size_t body, const SimulationState& state) {
   InteractionLevel level = InteractionLevel::none;
   for (std::size_t i = body; i < state.interactions.size(); i += state.bodies.size())

@@ -15,7 +15,7 @@
 
 namespace mrhi {
 
-/// A value as JSON, made of what C++ has for it. Numbers have twelve digits; what is no number is null.
+/// A value as JSON. Numbers have twelve digits; numbers that are not finite are null.
 struct Json {
   std::string text;
 
@@ -46,7 +46,7 @@ struct Json {
   template <class Value>
   Json(const std::map<std::string, Value>& members)
       : Json(std::vector<std::pair<std::string, Json>>(members.begin(), members.end())) {}
-  /// Members in their order, `between` them a comma and what is to stand there.
+  /// An object with its members in order, separated by a comma and `between`.
   Json(const std::vector<std::pair<std::string, Json>>& members, const std::string& between = " ") {
     for (const auto& [name, value] : members)
       text += (text.empty() ? "" : "," + between) + Json(name).text + ": " + value.text;
@@ -61,16 +61,16 @@ struct Column {
 
 /// A table that replay writes.
 struct Table {
-  std::string file, rows;  ///< name, and what has a row
+  std::string file, rows;  ///< name, and the meaning of a row
   std::vector<Column> columns;
 
-  /// Names with commas between.
+  /// Names of the columns, separated by commas.
   std::string header() const;
 };
 
 /// All tables, in the order of schema.json.
 const std::vector<Table>& tables();
-/// Throws std::out_of_range for a name that is none of these.
+/// The table of that file. Throws std::out_of_range for an unknown name.
 const Table& table_of(const std::string& file);
 
 /// schema.json: the tables' columns with unit and meaning.
@@ -79,16 +79,16 @@ std::string schema_json();
 /// Name of an event as in InteractionEvent.msg, e.g. GRASP_BEGIN.
 const char* event_name(EventKind kind);
 
-/// The tables that replay writes, a frame at a time; dictionary.h has their columns. joints.csv is written
-/// only if the scene has joints.
+/// Writes the tables of a replay, a frame at a time; tables.txt has their columns. joints.csv is written only
+/// if the scene has joints.
 class ResultWriter {
  public:
-  /// Makes the folder if need be. Throws std::runtime_error naming what cannot be written.
+  /// Creates the folder if it is missing. Throws std::runtime_error that names a file that cannot be written.
   ResultWriter(const std::string& folder, const Scene& scene);
 
-  /// `gravity`: that acts in the frame [m/s^2].
+  /// `gravity`: acts in the frame [m/s^2].
   void write(const FrameResult& result, const SimulationState& state, const Vector3& gravity);
-  /// Sets the scene of the frames to come.
+  /// Sets the scene of the following frames.
   void follow(const Scene& scene);
   void flush();
 

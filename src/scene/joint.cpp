@@ -39,12 +39,13 @@ void check_limits(const Joint& joint) {
 void check_detents(const Joint& joint) {
   if (!joint.detents) return;
   const std::vector<double>& at = joint.detents->at;
-  if (at.size() < 2 || at.size() > kMostDetents)
-    refuse(joint, std::to_string(at.size()) + " detents", "2 to " + std::to_string(kMostDetents));
+  if (at.size() < 2 || at.size() > kMaxDetents)
+    refuse(joint, std::to_string(at.size()) + " detents", "2 to " + std::to_string(kMaxDetents));
   for (const double place : at) check(joint, "detent at", place, kCoordinate);
   for (std::size_t i = 1; i < at.size(); ++i) {
-    if (!(at[i] - at[i - 1] >= kLeastDetent))
-      refuse(joint, "detents that do not ascend", "each at least " + text::number(kLeastDetent) + " further");
+    if (!(at[i] - at[i - 1] >= kMinDetentDistance))
+      refuse(joint, "detents that do not ascend",
+             "each at least " + text::number(kMinDetentDistance) + " further");
   }
   check(joint, "detents' force", joint.detents->force, kForce);
 }
@@ -90,16 +91,16 @@ void check_tree(const Scene& scene, const Joint& joint) {
   }
 }
 
-/// The first joint above, or the joint itself: on the world, on a fixture or on a body that is free.
+/// The first joint of the chain to this one: its parent is the world, a fixture or a free body.
 const Joint& first_of(const Scene& scene, const Joint& joint) {
   const Joint* first = &joint;
   while (const Joint* above = joint_of(scene, first->parent)) first = above;
   return *first;
 }
 
-/// Joints that a push on one of them may move: what hangs on a fixture or the world by one, all on a body
-/// that is free. What is to be solved at once grows with them.
-void check_together(const Scene& scene) {
+/// Limits the number of joints that a force on one of them may move: those of a mechanism, which are solved
+/// together. A mechanism begins at a joint on the world or a fixture, or at a free body.
+void check_mechanism_sizes(const Scene& scene) {
   std::map<std::string, std::size_t> together;
   for (const Joint& joint : scene.joints) {
     const Joint& first = first_of(scene, joint);
@@ -108,10 +109,10 @@ void check_together(const Scene& scene) {
     const bool floats = parent != nullptr && !parent->fixed;
     const std::string which =
         floats ? "body '" + parent->name + "'" : "joint '" + text::one_line(first.name, 60) + "'";
-    if (++together[which] > kMostTogether) {
-      throw std::invalid_argument("the mechanism of " + which + " has more than " +
-                                  std::to_string(kMostTogether) + " joints; allowed: at most that, and " +
-                                  std::to_string(kMostJoints) + " in a scene");
+    if (++together[which] > kMaxConnectedJoints) {
+      throw std::invalid_argument(
+          "the mechanism of " + which + " has more than " + std::to_string(kMaxConnectedJoints) +
+          " joints; allowed: at most that, and " + std::to_string(kMaxJoints) + " in a scene");
     }
   }
 }
@@ -138,9 +139,9 @@ Pose joint_motion(const Joint& joint, double position) {
 }
 
 void arrange_joints(Scene& scene) {
-  if (scene.joints.size() > kMostJoints) {
+  if (scene.joints.size() > kMaxJoints) {
     throw std::invalid_argument(std::to_string(scene.joints.size()) + " joints; allowed: at most " +
-                                std::to_string(kMostJoints));
+                                std::to_string(kMaxJoints));
   }
   for (const Joint& joint : scene.joints) {
     check_bodies(scene, joint);
@@ -150,7 +151,7 @@ void arrange_joints(Scene& scene) {
     check_detents(joint);
   }
   for (const Joint& joint : scene.joints) check_tree(scene, joint);
-  check_together(scene);
+  check_mechanism_sizes(scene);
   std::vector<std::pair<std::size_t, Joint>> sorted;
   for (const Joint& joint : scene.joints) sorted.emplace_back(depth_of(scene, joint), joint);
   std::stable_sort(sorted.begin(), sorted.end(),

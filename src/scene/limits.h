@@ -8,8 +8,8 @@
 #include "../text/yaml.h"
 #include "mr_hand_interaction/scene/body.h"
 
-/// What the numbers of a body may be: far beyond what hands meet, and so near that squares and quotients of
-/// them are numbers still.
+/// Limits of a body's numbers: far beyond what hands meet, but small enough that their squares and quotients
+/// are finite.
 namespace mrhi::body_limits {
 
 constexpr Range kMass{1e-6, 1e6};      ///< [kg]
@@ -23,18 +23,19 @@ constexpr Range kGravity{-100, 100};   ///< on each axis [m/s^2]
 
 }  // namespace mrhi::body_limits
 
-/// And those of a joint, in m, rad, N, N m and their quotients.
+/// Limits of a joint's numbers, in m, rad, N, N m and their quotients.
 namespace mrhi::joint_ranges {
 
-constexpr std::size_t kMostJoints = 256;
-constexpr std::size_t kMostTogether = 32;  ///< that hang together: a step costs more than their square
-constexpr std::size_t kMostDetents = 64;
-constexpr double kLeastDetent = 1e-4;  // between two [rad], [m]
+constexpr std::size_t kMaxJoints = 256;
+constexpr std::size_t kMaxConnectedJoints =
+    32;  ///< in a mechanism: the cost of a step grows faster than their square
+constexpr std::size_t kMaxDetents = 64;
+constexpr double kMinDetentDistance = 1e-4;  ///< smallest distance between two [rad], [m]
 constexpr Range kCoordinate{-1000.0, 1000.0};
 constexpr Range kForce{0.0, 1e5};
 constexpr Range kStiffness{0.0, 1e6};
 constexpr Range kRestitution{0.0, 1.0};
-constexpr Range kAxis{1e-6, 1000.0};  ///< length of an axis as it is given
+constexpr Range kAxis{1e-6, 1000.0};  ///< length of an axis in a URDF
 constexpr Range kReach{1e-5, 10.0};
 
 }  // namespace mrhi::joint_ranges
@@ -44,10 +45,10 @@ namespace mrhi {
 struct Joint;
 struct Scene;
 
-/// The joint by which a body hangs on another one; null if there is none.
+/// The joint that connects a body to its parent; null if there is none.
 const Joint* joint_of(const Scene& scene, int body);
 
-/// One number of a material: its name in files, what it may be, and what a slider spans of that.
+/// One number of a material: its name in files, its limits, and those of its slider.
 struct MaterialField {
   const char* name;
   const char* unit;
@@ -56,13 +57,13 @@ struct MaterialField {
   Range range, slider;
 };
 
-/// All of them; both the scene's YAML and the parameters are read by this table.
+/// All numbers of a material. The scene's YAML and the parameters are read by this table.
 const std::array<MaterialField, 4>& material_fields();
 
-/// A velocity and a spin within body_limits. Throws InputError.
+/// Reads a velocity and a spin within body_limits. Throws InputError.
 Twist read_twist(const YamlElement& element);
 
-/// What is wrong with the numbers taken together, or nothing.
+/// A conflict between the numbers; empty if there is none.
 std::optional<std::string> material_conflict(const Material& material);
 
 }  // namespace mrhi

@@ -65,7 +65,7 @@ class Collector {
   }
 
   int vertex(const aiVector3D& place) {
-    // What is no number is as good as equal to any other, and would be taken for a vertex that is known.
+    // NaN compares as equivalent to every key of the map: it would be taken for a known vertex.
     if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z))
       throw std::runtime_error("has a vertex that is not finite; allowed: finite numbers");
     const auto inserted = known_.emplace(std::array<ai_real, 3>{{place.x, place.y, place.z}},
@@ -97,7 +97,7 @@ void check_format(const std::string& file) {
   throw std::runtime_error("is of the format '" + text::one_line(extension, 20) + "'; allowed: " + all);
 }
 
-/// What stands for a large file where git has not fetched it.
+/// Refuses the pointer that git stores in place of a large file that it has not fetched.
 void check_fetched(const std::string& file) {
   const std::string pointer = "version https://git-lfs";
   if (file_text(file, pointer.size()) == pointer)
@@ -105,18 +105,17 @@ void check_fetched(const std::string& file) {
         "is a pointer of Git LFS; allowed: the file itself, that 'git lfs pull' fetches");
 }
 
-/// What a mesh may cost to read. The largest that have triangles within the limit are read in a second or
-/// two.
-constexpr std::uintmax_t kMostBytes = 64u << 20;
-constexpr std::size_t kMostTriangles = 500'000;
+/// Limits for reading meshes. A mesh with the largest number of triangles takes a second or two.
+constexpr std::uintmax_t kMaxBytes = 64u << 20;
+constexpr std::size_t kMaxTriangles = 500'000;
 constexpr ChildLimits kLimits{20, std::size_t(1) << 30, std::size_t(64) << 20};
 
 void check_size(const std::string& file) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error || size <= kMostBytes) return;
+  if (error || size <= kMaxBytes) return;
   throw std::runtime_error("has " + std::to_string(size) + " bytes; allowed: at most " +
-                           std::to_string(kMostBytes));
+                           std::to_string(kMaxBytes));
 }
 
 template <class Item>
@@ -137,10 +136,10 @@ std::vector<Item> taken(const std::string& bytes, std::size_t& at) {
   return items;
 }
 
-/// An STL as assimp knows it: without bytes behind its triangles, of which each takes 50 and the first begins
-/// at 84; and if it is text, in lower case and without blanks before it.
+/// An STL in the form that assimp reads. Binary: without bytes behind the triangles, which take 50 bytes each
+/// from byte 84 on. Text: in lower case, without leading blanks.
 std::string plain_stl(const std::string& file) {
-  std::string bytes = file_text(file, kMostBytes).value_or("");
+  std::string bytes = file_text(file, kMaxBytes).value_or("");
   std::uint32_t count = 0;
   if (bytes.size() >= 84) std::memcpy(&count, &bytes[80], sizeof count);
   const std::uint64_t whole = 84 + std::uint64_t(50) * count;
@@ -159,7 +158,7 @@ std::string plain_stl(const std::string& file) {
   return bytes;
 }
 
-/// Numbers of a line, with a decimal point whatever the locale; nothing if there is anything else.
+/// The numbers of a line, with a decimal point in any locale; empty if it contains anything else.
 std::optional<std::vector<double>> numbers_of(const char* c) {
   static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
   std::vector<double> numbers;
@@ -173,7 +172,8 @@ std::optional<std::vector<double>> numbers_of(const char* c) {
   return numbers;
 }
 
-/// Adds a triangle, or both of a convex quadrangle, of vertices as V/T/N each; false: another face.
+/// Reads a face with vertices of the form V/T/N. Adds its triangle, or both triangles of a convex quadrangle.
+/// Returns false for any other face.
 bool read_face(const char* c, const std::vector<aiVector3D>& vertices,
                std::vector<std::array<aiVector3D, 3>>& triangles) {
   std::vector<aiVector3D> face;
@@ -193,8 +193,8 @@ bool read_face(const char* c, const std::vector<aiVector3D>& vertices,
   return normal(0, 1, 2) * normal(0, 2, 3) > 0 && normal(1, 2, 3) * normal(1, 3, 0) > 0;
 }
 
-/// A small OBJ of one group of such faces, as programs write convex pieces; false: another one. Assimp clears
-/// 16 MB for each OBJ that it reads, which takes longer than all else about 200 pieces.
+/// Reads a small OBJ of one group of such faces, the form of convex pieces. Returns false for any other OBJ.
+/// Assimp clears 16 MB for each OBJ, which would take most of the time of loading 200 pieces.
 bool read_piece(const std::string& file, Collector& collector) {
   constexpr std::size_t kLargest = 1u << 20;
   const std::string text = file_text(file, kLargest + 1).value_or("");
@@ -222,7 +222,7 @@ bool read_piece(const std::string& file, Collector& collector) {
   return !triangles.empty();
 }
 
-/// Assimp reads what is given to it without any limit, and a small file may stand for an endless scene.
+/// Call within limits only: assimp has none, and a small file may expand to an endless scene.
 TriangleMesh read_by_assimp(const std::string& file, const Vector3& scale, Assimp::Importer& importer) {
   Collector collector(scale);
   if (lower_extension(file) == ".obj" && read_piece(file, collector)) return collector.take();
@@ -249,9 +249,9 @@ LoadedMesh read(const MeshFile& source, Assimp::Importer& importer) {
     loaded.mesh = read_by_assimp(source.file, source.scale, importer);
     const std::size_t count = loaded.mesh.triangles.size();
     if (count == 0) throw std::runtime_error("has no triangles; allowed: at least one");
-    if (count > kMostTriangles)
+    if (count > kMaxTriangles)
       throw std::runtime_error("has " + std::to_string(count) + " triangles; allowed: at most " +
-                               std::to_string(kMostTriangles));
+                               std::to_string(kMaxTriangles));
   } catch (const std::bad_alloc&) {
     loaded = {{}, "takes more memory than is allowed"};
   } catch (const std::exception& error) {
@@ -263,7 +263,7 @@ LoadedMesh read(const MeshFile& source, Assimp::Importer& importer) {
 std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files) {
   const std::string bytes = run_in_child(kLimits, [&] {
     std::string all;
-    Assimp::Importer importer;  // one for all: making it takes longer than a small file
+    Assimp::Importer importer;  // one for all files: creating it takes longer than reading a small one
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     for (const MeshFile& file : files) {
       const LoadedMesh loaded = read(file, importer);
@@ -286,7 +286,7 @@ std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files) {
 
 }  // namespace
 
-/// What is too much for one child process is read one by one, so that it is known which file is to blame.
+/// If the files exceed the limits together, each is read in a process of its own, to find the one at fault.
 std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files) {
   if (files.empty()) return {};
   try {

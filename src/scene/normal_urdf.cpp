@@ -66,7 +66,8 @@ bool is_hull_comment(const XMLNode& node) {
   return node.ToComment() != nullptr && text::one_line(node.Value()) == "hull";
 }
 
-/// Finds what xacro would have replaced. Properties that are left over change nothing.
+/// Searches for elements and expressions that xacro would have replaced, except left-over properties, which
+/// have no effect.
 class XacroSearch : public tinyxml2::XMLVisitor {
  public:
   bool VisitEnter(const XMLElement& element, const tinyxml2::XMLAttribute* attribute) override {
@@ -199,7 +200,7 @@ class Normaliser {
   void read_friction() {
     const auto read = [&](const XMLElement& element, const char* name, const char* link) {
       const XMLElement* found = find_within(element, name);
-      const std::string mu = attribute(found, "mu");  // 0 in URDF's tutorial, where nothing reads it
+      const std::string mu = attribute(found, "mu");  // URDF's tutorial has 0, which no program reads
       if (const auto value = text::to_number(mu.empty() ? value_of(found) : mu);
           value && (mu.empty() || *value > 0.0))
         result_.friction[links_.of(attribute(&element, link))] = *value;

@@ -20,7 +20,7 @@ const ShapeKind& kind_of(const std::string& name) {
                    "' is not known; allowed: " + shape_kind_names() + ", or a URDF in its place");
 }
 
-/// A link of that shape; without an inertia of its own it gets the shape's.
+/// XML of a link with that shape. It has no inertia, so the loader computes the shape's.
 PlacedLink placed_shape(const ObjectRequest& request) {
   const ShapeKind& kind = kind_of(request.shape);
   if (request.size.size() != kind.sizes.size()) {
@@ -103,7 +103,7 @@ ObjectRequest with_file_read(ObjectRequest request, const SceneOptions& options)
   if (file.compare(0, 7, "file://") == 0) file = file.substr(7);
   if (file.compare(0, 10, "package://") == 0)
     file = options.resolve_package_uri ? options.resolve_package_uri(file) : "";
-  const auto text = file.empty() ? std::nullopt : file_text(file, kMostXmlBytes + 1);
+  const auto text = file.empty() ? std::nullopt : file_text(file, kMaxXmlBytes + 1);
   if (!text || text->empty())
     throw SceneError(
         kSource + ": no URDF in '" + given +

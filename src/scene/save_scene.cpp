@@ -25,7 +25,7 @@ std::string numbers(const Vector3& v) {
   return text::exact(v.x()) + " " + text::exact(v.y()) + " " + text::exact(v.z());
 }
 
-/// Roll, pitch and yaw of a URDF: turns about fixed x, y and z, one after the other [rad].
+/// Roll, pitch and yaw of a URDF: successive rotations about the fixed axes x, y and z [rad].
 Vector3 roll_pitch_yaw(const Quaternion& q) {
   const Matrix3 r = q.toRotationMatrix();
   const double level = std::hypot(r(0, 0), r(1, 0)), pitch = std::atan2(-r(2, 0), level);
@@ -38,7 +38,7 @@ std::string origin(const Pose& pose) {
          "\"/>";
 }
 
-/// What is in quotes in XML.
+/// The text of an XML attribute, with escaped characters.
 std::string quoted(const std::string& text) {
   std::string result;
   for (const char c : text)
@@ -46,7 +46,7 @@ std::string quoted(const std::string& text) {
   return result;
 }
 
-/// A box has its sizes in one attribute.
+/// The shape's XML element. A box has its sizes in one attribute, other shapes in one each.
 std::string element(const ShapeKind& kind, const std::vector<double>& sizes) {
   if (kind.name == "box") return "<box size=\"" + numbers(Vector3(sizes[0], sizes[1], sizes[2])) + "\"/>";
   std::string text = "<" + kind.name;
@@ -62,7 +62,7 @@ class Writer {
   void write() {
     write_urdf();
     texts_.emplace_back(fs::path(file_).replace_extension(".yaml"), yaml());
-    texts_.emplace_back(file_, out_.str());  // last: who waits for it finds all
+    texts_.emplace_back(file_, out_.str());  // last: a program that waits for it finds the other files, too
     for (const auto& [file, text] : texts_) check_free(file);
     for (const auto& [file, text] : texts_) save(file, text);
   }
@@ -91,7 +91,7 @@ class Writer {
     out_ << "</robot>\n";
   }
 
-  /// A name that no body has.
+  /// Name of the root link, which no body has.
   std::string root() const {
     std::string name = "world";
     while (find_body(scene_, name)) name += "_";
@@ -140,7 +140,7 @@ class Writer {
     return "<mesh filename=\"" + quoted(mesh.uri) + "\" scale=\"" + numbers(mesh.scale) + "\"/>";
   }
 
-  /// Beside the scene, of what collides, be it scaled or a hull.
+  /// Adds an OBJ file beside the scene with a collision mesh (scaled, or a hull), and returns its name.
   std::string mesh_file(const Mesh& mesh) {
     const std::string name = file_.stem().string() + "_" + std::to_string(++meshes_) + ".obj";
     std::ostringstream obj;
@@ -265,7 +265,7 @@ class Writer {
     return node;
   }
 
-  /// What was written before it is taken away again if it cannot be.
+  /// Writes a file. If that fails, removes all files written so far.
   void save(const fs::path& file, const std::string& text) {
     errno = 0;
     std::ofstream out = file_to_write(file.string());
@@ -288,19 +288,19 @@ class Writer {
   int meshes_ = 0;
 };
 
-/// Of names that file systems have room for, and that a terminal shows as they are.
+/// Refuses names that are too long for a file system, or have control characters.
 void check_path(const fs::path& file, const std::string& shown) {
-  constexpr std::size_t kLongestName = 255, kLongest = 4095;
+  constexpr std::size_t kMaxNameBytes = 255, kMaxPathBytes = 4095;
   const std::string& whole = file.native();
   const bool plain = std::none_of(whole.begin(), whole.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
   });
   const bool fits = std::all_of(file.begin(), file.end(),
-                                [](const fs::path& name) { return name.native().size() <= kLongestName; });
-  if (!plain || !fits || whole.size() > kLongest || file.extension() != ".urdf")
+                                [](const fs::path& name) { return name.native().size() <= kMaxNameBytes; });
+  if (!plain || !fits || whole.size() > kMaxPathBytes || file.extension() != ".urdf")
     throw std::invalid_argument("file " + shown +
                                 " is not allowed; allowed: one that ends in .urdf, each name in it at most " +
-                                std::to_string(kLongestName) + " bytes, without control characters");
+                                std::to_string(kMaxNameBytes) + " bytes, without control characters");
   std::error_code ignored;
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, ignored))

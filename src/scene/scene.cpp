@@ -31,7 +31,7 @@ namespace {
 
 using namespace body_limits;
 
-constexpr double kThinnest = 1e-12;  // smallest principal moment, of the largest
+constexpr double kMinMomentRatio = 1e-12;  // smallest principal moment over the largest
 
 [[noreturn]] void refuse(const Body& body, const std::string& what, const Range& allowed,
                          const std::string& unit) {
@@ -62,7 +62,7 @@ void check_inertia(const Body& body) {
     throw std::invalid_argument(what + "is not symmetric; allowed: a symmetric matrix");
   }
   const Vector3 principal = Eigen::SelfAdjointEigenSolver<Matrix3>(inertia).eigenvalues();
-  if (principal[0] > kThinnest * principal[2]) {
+  if (principal[0] > kMinMomentRatio * principal[2]) {
     if (!kInertia.contains(principal[0]) || !kInertia.contains(principal[2]))
       refuse(body, "inertia with the principal moments " + text::vector(principal) + " kg m^2", kInertia,
              " kg m^2");
@@ -71,15 +71,15 @@ void check_inertia(const Body& body) {
   throw std::invalid_argument(what + "with the principal moments " + text::vector(principal) +
                               " kg m^2 is not allowed; allowed: all three above 0, and the smallest more "
                               "than " +
-                              text::number(kThinnest) + " of the largest");
+                              text::number(kMinMomentRatio) + " of the largest");
 }
 
 bool is_diagonal(const Matrix3& matrix) {
   return Matrix3(matrix.diagonal().asDiagonal()) == matrix;
 }
 
-/// Which axis has the intermediate moment: it is the second of the addition theorem (free_rotation() in
-/// integration/free_flight.cpp), for which A and B are then not negative, and the functions real.
+/// Axis of the intermediate moment. It is the second axis in free_rotation() (integration/free_flight.cpp):
+/// then A and B of the addition theorem are not negative, and its functions are real.
 int intermediate(const Vector3& moments) {
   for (int i = 0; i < 2; ++i) {
     if ((moments[(i + 1) % 3] - moments[i]) * (moments[i] - moments[(i + 2) % 3]) >= 0.0) return i;
@@ -87,7 +87,7 @@ int intermediate(const Vector3& moments) {
   return 2;
 }
 
-/// Of a body that has its inertia along its own axes, these: to the bit.
+/// Sets the principal axes. They are exactly the body's axes if its inertia is diagonal.
 void find_principal_axes(Body& body) {
   const Vector3 diagonal = body.inverse_inertia.diagonal();
   const int second = intermediate(diagonal);
@@ -110,8 +110,8 @@ std::optional<int> find_named(const std::vector<Named>& all, const std::string& 
   return static_cast<int>(found - all.begin());
 }
 
-/// For each of the scene's bodies whether it is the one or hangs on it: joints come before those of what
-/// hangs on them.
+/// For each body of the scene: 1 if it is this one or a descendant by joints. A body's joint precedes those
+/// of its children.
 std::vector<char> removed_with(std::size_t body, const Scene& scene) {
   std::vector<char> removed(scene.bodies.size(), 0);
   removed[body] = 1;
@@ -122,7 +122,7 @@ std::vector<char> removed_with(std::size_t body, const Scene& scene) {
   return removed;
 }
 
-/// Keeps the items that `stays` says of, which puts their indices right.
+/// Keeps the items for which `stays` returns true; it also updates their indices.
 template <typename Item, typename Stays>
 void keep(std::vector<Item>& items, const Stays& stays) {
   std::vector<Item> kept;
@@ -239,7 +239,7 @@ std::vector<std::size_t> hanging_on(std::size_t body, const Scene& scene) {
 
 void remove_body(std::size_t body, Scene& scene) {
   const std::vector<char> removed = removed_with(body, scene);
-  std::vector<int> place;  // of each body among those that stay; -1: removed
+  std::vector<int> place;  // new index of each body; -1: removed
   place.reserve(removed.size());
   int staying = 0;
   for (const char gone : removed) place.push_back(gone != 0 ? -1 : staying++);

@@ -25,23 +25,23 @@ void check_color(const std::string& element, const std::array<float, 4>& rgba) {
 
 namespace {
 
-constexpr std::size_t kMostShapes = 255;  // a contact's key has 8 bits for the shape
+constexpr std::size_t kMaxShapes = 255;  // a contact's key has 8 bits for the shape
 
-/// A rigid body's principal moments obey a + b >= c. Files round them: a thin plate just meets it.
-constexpr double kTriangleSlack = 0.01;
-/// Moments of inertia of a body, as fractions of its mass times its radius squared: others have another unit.
+/// Tolerance of a + b >= c for principal moments, which files round. A thin plate has a + b = c.
+constexpr double kMomentTolerance = 0.01;
+/// Plausible moments of inertia, over mass times radius squared. Others are probably in another unit.
 constexpr Range kPlausibleMoment{0.003, 3.0};
-/// No solid is denser; osmium has 22 590 kg/m^3.
+/// Above the density of every solid (osmium: 22 590) [kg/m^3].
 constexpr double kMaxDensity = 25000.0;
-/// Objects that hands meet have lengths in this range [m].
+/// Plausible lengths of objects for hands [m].
 constexpr Range kPlausibleLength{1e-3, 10.0};
-/// A centre of mass is this fraction of a body's size within its surface, or more.
+/// Plausible centres of mass are at least this fraction of the size inside the bounding box.
 constexpr double kCentreMargin = 0.05;
-/// A principal moment below this fraction of the largest is one that the file leaves out.
-constexpr double kNoMoment = 1e-12;
+/// A principal moment below this fraction of the largest counts as missing in the file.
+constexpr double kMissingMoment = 1e-12;
 
-/// Has the inertia of a link that has neither one nor a shape.
-const Sphere kUnseen{0.01};
+/// Gives its inertia to a link that has neither an inertia nor a shape.
+const Sphere kShapelessLink{0.01};
 
 /// Mass, centre and inertia about it, in the frame of a body's first link.
 struct Weight {
@@ -95,14 +95,14 @@ class BodyReader {
     if (body.visuals.empty())
       for (const PlacedShape& shape : body.shapes) body.visuals.push_back({shape.shape, shape.pose});
     body.shapes = with_meshes_joined(body.shapes);
-    if (body.shapes.size() > kMostShapes)
+    if (body.shapes.size() > kMaxShapes)
       fail(link, std::to_string(body.shapes.size()) + " collisions; allowed: at most 255");
     finish(body);
     return body;
   }
 
  private:
-  /// In the first link's frame; those of each part too, for its inertia.
+  /// Reads the collision shapes into the first link's frame, also by part, for the parts' inertias.
   void read_collisions(const std::vector<LinkPart>& parts, Body& body) {
     of_parts_.assign(parts.size(), {});
     flat_ = false;
@@ -135,7 +135,7 @@ class BodyReader {
     }
   }
 
-  /// One coefficient stands for both of ours, as it does in the simulators that have it.
+  /// Sets both frictions to the one coefficient, as the simulators do that have one.
   void read_friction(const std::string& link, Body& body) const {
     const auto given = document_.friction.find(link);
     if (given == document_.friction.end()) return;
@@ -148,7 +148,7 @@ class BodyReader {
     body.own_material.static_friction = body.own_material.dynamic_friction = true;
   }
 
-  /// A link without a mass adds none, unless no link of the body has one: then the shapes' volume does.
+  /// Sums the masses of the links. If no link has one, the volume of the shapes determines it.
   void weigh(const std::vector<LinkPart>& parts, Body& body) {
     std::vector<Weight> weights;
     for (std::size_t i = 0; i < parts.size(); ++i)
@@ -161,7 +161,8 @@ class BodyReader {
     body.shapes = moved(std::move(body.shapes), body.link_in_body);
   }
 
-  /// PyBullet's files have inertias without a moment about an axis, which PyBullet does not read.
+  /// Replaces an inertia that lacks a moment by the shapes': some of PyBullet's files have such inertias,
+  /// which PyBullet ignores.
   Weight weight_of(const LinkPart& part, const std::vector<PlacedShape>& shapes) const {
     const urdf::Inertial& given = *part.link->inertial;
     const Pose origin = part.pose * to_pose(given.origin);
@@ -172,13 +173,13 @@ class BodyReader {
     Weight weight{given.mass, origin.position, symmetric(to_link * inertia * to_link.transpose())};
     const bool none = weight.inertia.isZero(0.0);
     const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(weight.inertia).eigenvalues();
-    const bool part_only = !none && std::abs(moments[0]) <= kNoMoment * moments[2];
+    const bool part_only = !none && std::abs(moments[0]) <= kMissingMoment * moments[2];
     if (part_only)
       document_.warnings.add("inertias that lack a moment are replaced by those of the shapes",
                              "'" + part.link->name + "' " + text::vector(moments) + " kg m^2");
     if (none || part_only)
       weight.inertia =
-          shapes.empty() ? inertia_of({{kUnseen, Pose{}}}, given.mass)
+          shapes.empty() ? inertia_of({{kShapelessLink, Pose{}}}, given.mass)
                          : inertia_of(moved(shapes, {-origin.position, Quaternion::Identity()}), given.mass);
     return weight;
   }
@@ -186,7 +187,7 @@ class BodyReader {
   Weight weight_of_volume(const Body& body) const {
     if (body.shapes.empty()) {
       document_.warnings.add("links without mass and shape weigh 1 g", "'" + body.name + "'");
-      return {0.001, Vector3::Zero(), inertia_of({{kUnseen, Pose{}}}, 0.001)};
+      return {0.001, Vector3::Zero(), inertia_of({{kShapelessLink, Pose{}}}, 0.001)};
     }
     const SolidMoments moments = moments_of(body.shapes);
     Weight weight;
@@ -226,7 +227,7 @@ class BodyReader {
     }
     if (body.fixed) return;
     const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(body.inertia).eigenvalues();
-    if (moments[0] + moments[1] < (1 - kTriangleSlack) * moments[2])
+    if (moments[0] + moments[1] < (1 - kMomentTolerance) * moments[2])
       throw SceneError(
           source_ + ": body '" + body.name + "': no rigid body has the principal moments of inertia " +
           text::vector(moments) +
@@ -235,7 +236,7 @@ class BodyReader {
     if (!body.shapes.empty()) warn_of_units(body, moments[2]);
   }
 
-  /// Names what no object has, and the slip that is likely behind it.
+  /// Warns of implausible values, and names the likely mistake.
   void warn_of_units(const Body& body, double moment) const {
     const auto warn = [&](const char* what, const std::string& value) {
       document_.warnings.add(what, "'" + body.name + "' " + value);
@@ -274,8 +275,8 @@ class BodyReader {
   const SceneOptions& options_;
   ShapeReader& shapes_;
   UrdfDocument& document_;
-  bool flat_ = false;                               // a shape of the body being read is a sheet
-  std::vector<std::vector<PlacedShape>> of_parts_;  // of the body being read, in its first link's frame
+  bool flat_ = false;                               // a shape of the current body is a flat sheet
+  std::vector<std::vector<PlacedShape>> of_parts_;  // of the current body, in its first link's frame
 };
 
 void read_bodies(const std::string& source, const std::string& folder, UrdfDocument& document,
@@ -309,14 +310,14 @@ void check_starts_in_bounds(const std::string& file, const Scene& scene) {
   }
 }
 
-/// Bounds that no file gives hold all that moves where it starts.
+/// Widens the default bounds so that they contain the start of every body that moves.
 void widen_bounds(Scene& scene) {
-  constexpr double kRoom = 1.0;  // [m]
+  constexpr double kMargin = 1.0;  // [m]
   Bounds wide = scene.bounds;
   for (const Body& body : scene.bodies) {
-    const Vector3 room = Vector3::Constant(kRoom + body.bounding_radius), &start = body.start.position;
+    const Vector3 margin = Vector3::Constant(kMargin + body.bounding_radius), &start = body.start.position;
     if (body.fixed || is_inside(scene.bounds, start)) continue;
-    wide.min = wide.min.cwiseMin(start - room), wide.max = wide.max.cwiseMax(start + room);
+    wide.min = wide.min.cwiseMin(start - margin), wide.max = wide.max.cwiseMax(start + margin);
   }
   if (wide.min == scene.bounds.min && wide.max == scene.bounds.max) return;
   scene.bounds = wide;
@@ -364,8 +365,8 @@ void join_bodies(const std::string& source, Scene& scene) {
   }
 }
 
-/// Bodies that begin inside each other push each other out with all they have, and many of them at once cost
-/// more than a step has time for.
+/// Refuses bodies that overlap at the start: they would repel each other violently, and many of them would
+/// take longer than a step may.
 void check_overlaps(const std::string& file, Scene& scene) {
   Warnings warnings;
   for (const auto& [a, b] : overlaps_in_mechanisms(scene))
@@ -386,7 +387,7 @@ std::string find_scene_file(const std::string& scene, const std::vector<std::str
 Scene load_scene(const std::string& urdf_file, const SceneOptions& options) {
   Scene scene;
   scene.name = fs::path(urdf_file).stem().string();
-  const std::optional<std::string> xml = file_text(urdf_file, kMostXmlBytes + 1);
+  const std::optional<std::string> xml = file_text(urdf_file, kMaxXmlBytes + 1);
   if (!xml || xml->empty()) throw SceneError(urdf_file + ": cannot be read; allowed: a readable URDF file");
   read_urdf(urdf_file, fs::path(urdf_file).parent_path().string(), *xml, options, scene);
   const Bounds usual = scene.bounds;

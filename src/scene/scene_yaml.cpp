@@ -61,8 +61,7 @@ void read_joint(const YamlElement& element, Joint& joint) {
   }
 }
 
-/// Sets of joints, by their names, what a URDF has no place for. What the numbers may be is
-/// arrange_joints()'s to say.
+/// Sets the properties of joints that a URDF has no element for. arrange_joints() checks their limits.
 void read_joint_settings(const YamlElement& element, Scene& scene) {
   for (const std::string& name : checked_keys(element, text::names_of(scene.joints)))
     read_joint(element.at(name), scene.joints[static_cast<std::size_t>(*find_joint(scene, name))]);
@@ -70,19 +69,19 @@ void read_joint_settings(const YamlElement& element, Scene& scene) {
 
 using Element = YamlElement;
 
-/// Explicit coupling of an operator to what is heavier needs a body of some mass (docs/training.md)
-/// [kg].
+/// [kg]. The operator is coupled explicitly to other bodies, which a very light one would make unstable
+/// (docs/training.md).
 constexpr Range kOperatorMass{10, 1000};
 constexpr Range kRestraintReach{0, 3};  // [m]
-constexpr Range kStart{-900, 900};      // of the frame, on each axis: its centre of mass is near [m]
+constexpr Range kStart{-900, 900};      // of the frame, on each axis; leaves room for the centre of mass [m]
 constexpr Range kTetherLength{0.001, 100};
 
-/// Radii of gyration of a person who stands upright, about x (to the right), y (ahead) and z (up) [m].
+/// Radii of gyration of an upright person about x (right), y (forward) and z (up) [m].
 const Vector3 kGyration{0.38, 0.39, 0.14};
-/// Of the centre of mass from the origin of the tracker's frame, which lies before the person [m].
+/// Centre of mass in the tracker's frame, whose origin is in front of the person [m].
 const Vector3 kCentre{0.0, -0.4, 0.0};
 
-/// Six numbers, each group of three in its range, or the first three of them.
+/// Reads six numbers, each group of three in its range; or only the first three, if `three_will_do`.
 Twist read_six(const Element& element, const Range& first, const Range& last, bool three_will_do) {
   auto numbers = yaml_numbers(element.node, 6);
   if (!numbers && three_will_do) numbers = yaml_numbers(element.node, 3);
@@ -229,8 +228,8 @@ void read_grasps(const Element& element, Scene& scene) {
   }
 }
 
-/// Of bodies at the start, as the service's: [vx, vy, vz, wx, wy, wz]. Joints take the part that they let
-/// through.
+/// Reads start velocities of bodies, [vx, vy, vz, wx, wy, wz] as in the service. A body on a joint keeps the
+/// component that the joint allows.
 void read_twists(const Element& element, Scene& scene) {
   std::vector<std::string> links;
   for (const Body& body : scene.bodies) {

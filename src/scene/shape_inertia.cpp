@@ -13,7 +13,7 @@ extern "C" {
 
 namespace {
 
-/// qhull's memory, and a place for what it would print.
+/// A run of qhull: its memory, and a buffer for what it would print.
 class Qhull {
  public:
   Qhull() : complaints_(open_memstream(&text_, &length_)) { qh_zero(&qh_, complaints_); }
@@ -33,8 +33,8 @@ class Qhull {
     return qh_new_qhull(&qh_, 3, static_cast<int>(points.size()), points[0].data(), False, command, nullptr,
                         complaints_) == 0;
   }
-  /// Calls `see(points)` for each facet, its points in their order round it, from outside always the same
-  /// way.
+  /// Calls `see(points)` for each facet with the indices of its points, in order around it. Seen from
+  /// outside, all facets have the same orientation.
   template <typename See>
   void each_facet(const See& see) {
     for (facetT* facet = qh_.facet_list; facet != nullptr && facet->next != nullptr; facet = facet->next) {
@@ -102,7 +102,7 @@ bool has_parts(const std::vector<PlacedShape>& shapes) {
   });
 }
 
-/// Where lines along x, on a grid across, go in and out of surfaces.
+/// Crossings of a mesh's surface by lines along x, on a grid in y and z.
 class Columns {
  public:
   explicit Columns(const TriangleMesh& mesh) : lines_(kLines * kLines) {
@@ -115,7 +115,8 @@ class Columns {
             mesh.vertices[std::size_t(t[2])]);
   }
 
-  /// A line is within n solids between two crossings: n - 1 too many.
+  /// Moments of the volume that parts share. Between two crossings a line is inside n parts; n - 1 of them
+  /// are counted too often.
   SolidMoments shared() {
     SolidMoments sum;
     for (std::size_t line = 0; line < lines_.size(); ++line) {
@@ -123,7 +124,7 @@ class Columns {
       std::sort(crossings.begin(), crossings.end());
       int within = 0;
       for (const auto& crossing : crossings) within += crossing.second;
-      if (within != 0) continue;  // it has passed an edge
+      if (within != 0) continue;  // the line met an edge
       const Eigen::Vector2d at = place(int(line % kLines), int(line / kLines));
       for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
         within += crossings[i].second;
@@ -134,9 +135,9 @@ class Columns {
   }
 
  private:
-  static constexpr int kLines = 100;  // on a side
+  static constexpr int kLines = 100;  // along each side of the grid
 
-  /// Off the middle of a cell by parts that no file has, so that lines meet no edges.
+  /// A point beside the middle of a cell, at fractions that no file has, so that lines do not meet edges.
   Eigen::Vector2d place(int i, int j) const {
     return low_ + cell_.cwiseProduct(Eigen::Vector2d(i + 0.5031417, j + 0.4972853));
   }
@@ -164,7 +165,7 @@ class Columns {
         const Eigen::Vector2d at = place(i, j);
         const double u = side(q, r, at) / twice, v = side(r, p, at) / twice, w = 1.0 - u - v;
         if (u < 0.0 || v < 0.0 || w < 0.0) continue;
-        // Seen along x a triangle whose normal points back is entered.
+        // The line enters the solid if the triangle's normal points towards -x.
         lines_[std::size_t(j * kLines + i)].emplace_back(u * a.x() + v * b.x() + w * c.x(),
                                                          twice < 0.0 ? 1 : -1);
       }
@@ -221,8 +222,8 @@ TriangleMesh convex_hull(const TriangleMesh& mesh) {
   return result;
 }
 
-/// A convex shape's hull of the places farthest along many directions (a Fibonacci lattice), or a mesh
-/// itself.
+/// Approximates a convex shape by the hull of its support points in many directions (a Fibonacci lattice).
+/// Returns a mesh unchanged.
 TriangleMesh surface_of(const PlacedShape& shape) {
   TriangleMesh mesh;
   if (const Mesh* const given = std::get_if<Mesh>(&shape.shape)) {
@@ -257,13 +258,13 @@ bool overlaps_itself(const TriangleMesh& mesh) {
   return shared_moments(mesh, signed_volume(mesh)).volume > 0.0;
 }
 
-/// By the tetrahedra from the origin to the triangles, with their signs (Tonon 2004).
+/// Sums the signed tetrahedra from the origin to the triangles (Tonon 2004).
 ///
-/// Of a tetrahedron with the corners 0, a, b, c:
+/// For a tetrahedron with the corners 0, a, b, c:
 ///     V = a.(b x c) / 6,   integral of x = V (a + b + c) / 4,
 ///     integral of x x^T = V / 20 (a a^T + b b^T + c c^T + (a + b + c)(a + b + c)^T).
-/// V is positive for a triangle that faces away from the origin and negative else, so that what is outside
-/// the solid is taken off again: right for a closed mesh alone.
+/// V is positive for a triangle that faces away from the origin, else negative, so volume outside the solid
+/// cancels. Valid only for a closed mesh.
 SolidMoments signed_moments(const TriangleMesh& mesh) {
   SolidMoments moments;
   for (const std::array<int, 3>& triangle : mesh.triangles) {

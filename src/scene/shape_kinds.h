@@ -8,12 +8,12 @@
 
 namespace mrhi {
 
-/// A shape that is given by its sizes, in a URDF or in a request to spawn.
+/// A kind of shape that is defined by its sizes, in a URDF or in a spawn request.
 struct ShapeKind {
-  std::string name;                ///< of the URDF's element
-  std::vector<std::string> sizes;  ///< what they are called; but for a box, the element's attributes
+  std::string name;                ///< of its element in a URDF
+  std::vector<std::string> sizes;  ///< names of the sizes; attributes of the element, except for a box
   Shape (*make)(const std::vector<double>& size);
-  /// Of a shape of this kind, as `make` takes them; nothing of another.
+  /// Sizes of a shape of this kind, as `make` takes them; empty for another kind.
   std::optional<std::vector<double>> (*sizes_of)(const Shape& shape);
 
   std::string describe(const std::vector<double>& size) const;  ///< "cylinder radius 1 and length 2"
@@ -21,17 +21,16 @@ struct ShapeKind {
 
 const std::vector<ShapeKind>& shape_kinds();
 
-/// Null if there is none.
+/// Null for an unknown name.
 const ShapeKind* find_shape_kind(const std::string& name);
 
 /// Names of all kinds, for messages.
 std::string shape_kind_names();
 
-// urdfdom knows neither all kinds nor that there may be others: what it shall hand on stands in place of a
-// mesh's filename.
+/// The shape as the file name of a mesh: urdfdom does not know all kinds, but passes on file names.
 std::string as_filename(const ShapeKind& kind, const std::vector<double>& size);
 
-/// Stands before the filename of a mesh whose convex hull is meant.
+/// Prefix of the file name of a mesh that is used as its convex hull.
 const char* const kHullPrefix = ":hull:";
 
 }  // namespace mrhi

@@ -13,13 +13,13 @@ const char* const kNoVolume = "has no volume; allowed for collision: a surface a
 using Triangle = std::array<int, 3>;
 using Triangles = std::vector<Triangle>;
 
-/// Vertices nearer to each other than this part of the mesh's extent are one, if that closes a surface: what
-/// rounding leaves, and then what exporters do.
+/// Distances at which vertices are joined if that closes the surface, over the mesh's extent: first gaps from
+/// rounding, then those that exporters leave.
 constexpr double kSeams[] = {1e-6, 1e-5, 1e-4};
-/// A hole that is filled is no wider than this part of the extent.
+/// Largest width of a hole that is filled, over the extent.
 constexpr double kSmallHole = 0.05;
-/// A solid has more than this part of its extent's cube.
-constexpr double kLeastVolume = 1e-9;
+/// Smallest volume of a solid, over the cube of its extent.
+constexpr double kMinVolume = 1e-9;
 
 Vector3 corner(const TriangleMesh& mesh, const Triangle& triangle, std::size_t k) {
   return mesh.vertices[static_cast<std::size_t>(triangle[k])];
@@ -41,7 +41,8 @@ double volume_of(const TriangleMesh& mesh, const Triangles& triangles) {
   return volume;
 }
 
-/// How often each edge runs from its lesser vertex to the other, less how often back; and its triangles.
+/// An edge: number of triangles that run along it from its lower vertex to the higher, minus those that run
+/// back; and indices of all of them.
 struct Edge {
   int balance = 0;
   std::vector<int> triangles;
@@ -68,11 +69,10 @@ bool is_closed(const Triangles& triangles) {
 
 bool is_solid(const TriangleMesh& mesh, const Triangles& part) {
   const double extent = extent_of(mesh, part);
-  return std::abs(volume_of(mesh, part)) > kLeastVolume * extent * extent * extent && is_closed(part);
+  return std::abs(volume_of(mesh, part)) > kMinVolume * extent * extent * extent && is_closed(part);
 }
 
-/// Joins vertices that are no farther apart than `distance` with the first of them, and drops the triangles
-/// that vanish.
+/// Joins vertices at most `distance` apart, and drops triangles that become degenerate.
 void weld(TriangleMesh& mesh, double distance) {
   using Cell = std::array<long long, 3>;
   std::map<Cell, std::vector<int>> cells;
@@ -104,7 +104,7 @@ void weld(TriangleMesh& mesh, double distance) {
                        mesh.triangles.end());
 }
 
-/// The first of all triangles between the same three vertices, whichever way it is turned.
+/// Keeps the first of all triangles on the same three vertices, whatever their orientation.
 Triangles without_doubled(const Triangles& triangles) {
   std::map<Triangle, bool> seen;
   Triangles kept;
@@ -122,7 +122,7 @@ std::set<int> vertices_of(const Triangles& triangles) {
   return vertices;
 }
 
-/// Triangles that hang together by edges of two, each part turned the way of its first one.
+/// Parts that are connected by edges of two triangles, each with the orientation of its first triangle.
 std::vector<Triangles> parts_of(const Triangles& triangles) {
   const Edges edges = edges_of(triangles);
   std::vector<Triangles> parts;
@@ -160,8 +160,8 @@ std::vector<Triangles> parts_of(const Triangles& triangles) {
   return parts;
 }
 
-/// The first of all patches with the same vertices and border, since the sides of a face may be divided into
-/// different triangles; with `cancel`, none of two.
+/// Keeps the first of all patches with the same vertices and border: the two sides of a doubled face may be
+/// divided into different triangles. With `cancel`, a pair of patches is dropped entirely.
 Triangles without_doubled_patches(const std::vector<Triangles>& patches, bool cancel) {
   std::map<std::pair<std::set<int>, std::set<std::pair<int, int>>>, std::vector<std::size_t>> same;
   for (std::size_t p = 0; p < patches.size(); ++p) {
@@ -178,17 +178,17 @@ Triangles without_doubled_patches(const std::vector<Triangles>& patches, bool ca
   return left;
 }
 
-/// Triangles divided where a vertex of the border is on an edge of it, as where CAD programs mesh one face
-/// finer than the next.
+/// Divides triangles where a border vertex lies on one of their edges: CAD programs mesh adjacent faces at
+/// different resolutions (T-junctions).
 Triangles divided_at_border(const TriangleMesh& mesh, Triangles triangles, double distance) {
-  constexpr std::size_t kMostBorder = 4000;  // edges that are compared with each other
-  const std::size_t most = 2 * triangles.size() + kMostBorder;
+  constexpr std::size_t kMaxBorder = 4000;  // edges: each is compared with all others
+  const std::size_t most = 2 * triangles.size() + kMaxBorder;
   for (bool divides = true; divides && triangles.size() < most;) {
     divides = false;
     std::vector<std::pair<int, int>> border;
     for (const auto& [ends, edge] : edges_of(triangles))
       if (edge.balance != 0) border.push_back(ends);
-    if (border.size() > kMostBorder) break;
+    if (border.size() > kMaxBorder) break;
     Triangles divided;
     for (const Triangle& triangle : triangles) {
       int on_edge = -1;
@@ -221,8 +221,8 @@ Triangles divided_at_border(const TriangleMesh& mesh, Triangles triangles, doubl
   return triangles;
 }
 
-/// Fans over the holes of a part that are small or lack one triangle; each runs against the triangles at its
-/// border. Returns whether one that is not small was filled.
+/// Fills the holes of a part that are small or lack one triangle with fans. Returns true if a hole that is
+/// not small was filled.
 bool fill_holes(const TriangleMesh& mesh, Triangles& part) {
   const double widest = kSmallHole * extent_of(mesh, part);
   std::map<int, int> next;  // along the border
@@ -248,8 +248,8 @@ bool fill_holes(const TriangleMesh& mesh, Triangles& part) {
   return large;
 }
 
-/// The solid angle of a closed part as seen from a place is 4 pi inside and 0 outside (van Oosterom &
-/// Strackee 1983).
+/// The solid angle of a closed part is 4 pi as seen from inside, and 0 from outside (van Oosterom & Strackee
+/// 1983).
 bool is_inside(const TriangleMesh& mesh, const Triangles& part, const Vector3& place) {
   double angle = 0.0;
   for (const Triangle& t : part) {
@@ -261,23 +261,24 @@ bool is_inside(const TriangleMesh& mesh, const Triangles& part, const Vector3& p
   return std::abs(angle) > 6.283185307179586;
 }
 
-/// By some of its corners.
+/// True if a sample of its corners is inside the other part.
 bool is_within(const TriangleMesh& mesh, const Triangles& part, const Triangles& other) {
-  constexpr std::size_t kAsked = 16;
-  const std::size_t step = std::max<std::size_t>(1, part.size() / kAsked);
+  constexpr std::size_t kSamples = 16;
+  const std::size_t step = std::max<std::size_t>(1, part.size() / kSamples);
   for (std::size_t t = 0; t < part.size(); t += step)
     if (!is_inside(mesh, other, corner(mesh, part[t], 0))) return false;
   return true;
 }
 
-/// A closed part and what is within it.
+/// A closed part and its cavities.
 struct Solid {
   Triangles triangles;
-  bool inward;  // as the file has it
+  bool inward;  // orientation in the file
   std::vector<Triangles> cavities;
 };
 
-/// The largest first: what is within another one is its cavity if it is turned against it, else a part of it.
+/// Sorts the parts by volume, largest first. A part inside another one is its cavity if it has the opposite
+/// orientation, else a solid of its own.
 std::vector<Solid> nested(const TriangleMesh& mesh, std::vector<Triangles> parts) {
   std::vector<std::pair<double, Triangles*>> by_size;
   by_size.reserve(parts.size());
@@ -321,7 +322,8 @@ bool are_solid(const TriangleMesh& mesh, const std::vector<Triangles>& parts) {
          std::all_of(parts.begin(), parts.end(), [&](const Triangles& part) { return is_solid(mesh, part); });
 }
 
-/// What is left open once all has been tried. Sheets are what has no hull.
+/// Sets the mesh to the solid parts and the hull of those that remain open. Flat sheets, which have no hull,
+/// are left out.
 std::vector<std::string> put_with_hull(std::vector<Triangles> parts, TriangleMesh& mesh) {
   std::vector<Triangles> solids;
   Triangles open;
@@ -358,7 +360,8 @@ std::vector<std::string> put_with_hull(std::vector<Triangles> parts, TriangleMes
     assumed.push_back("is not closed: its convex hull is taken");
   }
   put(solids, mesh);
-  const TriangleMesh used = cut_out(mesh, mesh.triangles);  // a shape is as large as its vertices reach
+  const TriangleMesh used =
+      cut_out(mesh, mesh.triangles);  // without unused vertices, which would enlarge the shape
   mesh.vertices = used.vertices, mesh.triangles = used.triangles;
   return assumed;
 }
@@ -408,7 +411,7 @@ std::vector<std::string> make_solid(TriangleMesh& mesh) {
     welded.triangles = without_doubled(welded.triangles);
     std::vector<Triangles> parts = parts_of(welded.triangles);
     if (!are_solid(welded, parts)) {
-      const Triangles joined = without_doubled_patches(as_they_are, true);  // solids that share faces are one
+      const Triangles joined = without_doubled_patches(as_they_are, true);  // joins solids that share faces
       const bool whole = vertices_of(joined) == vertices_of(welded.triangles);
       if (whole && are_solid(welded, parts_of(joined))) {
         parts = parts_of(joined);

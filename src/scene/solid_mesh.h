@@ -14,69 +14,67 @@ struct MeshFile {
   Vector3 scale;
 };
 
-/// All triangles of a file, vertices at the same place joined; or what is wrong with it.
+/// All triangles of a file, with coincident vertices joined; or the reason why it cannot be used.
 struct LoadedMesh {
   TriangleMesh mesh;
-  std::string problem;  ///< goes on from the file's name; empty: none
+  std::string problem;  ///< continues a message after the file's name; empty: none
 };
 
-/// Reads what assimp reads: STL, OBJ, DAE, PLY, glTF. A DAE's units are taken, its up axis is not (as in
-/// rviz). A child process reads all files, with limits on sizes, time, memory and triangles.
+/// Reads the formats that assimp reads: STL, OBJ, DAE, PLY, glTF. Applies a DAE's unit, but not its up axis
+/// (as in rviz). A child process reads all files, with limits on sizes, time, memory and triangles.
 std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files);
 
-/// A mesh that is a flat sheet, or nothing. what() goes on from the mesh's name.
+/// Error of a mesh that is flat or empty. what() continues a message after the mesh's name.
 class NoVolume : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Makes a solid of a surface. Each connected part is turned outward, or inward where it is a cavity of
-/// another. Of doubled faces one is kept, vertices within 1e-4 of the extent are joined if that closes the
-/// surface, edges are divided where another triangle's vertex is on them, and small holes are filled. Parts
-/// that are open all the same become one convex hull; flat sheets beside solids are left out. `parts` is set
-/// where solids overlap. Returns what was assumed, for warnings, each going on from the mesh's name. Throws
-/// NoVolume.
+/// Makes a solid of a surface. Orients each connected part outward, or inward if it is a cavity of another.
+/// Keeps one of doubled faces, joins vertices within 1e-4 of the extent if that closes the surface, divides
+/// edges at vertices of other triangles, and fills small holes. Parts that are still open become one convex
+/// hull; flat sheets beside solids are left out. Sets `parts` if solids overlap. Returns the assumptions for
+/// warnings; each continues a message after the mesh's name. Throws NoVolume.
 std::vector<std::string> make_solid(TriangleMesh& mesh);
 
-/// By the divergence theorem; negative if the triangles are turned inward [m^3].
+/// Volume by the divergence theorem; negative if the triangles face inward [m^3].
 double signed_volume(const TriangleMesh& mesh);
 
 /// The convex hull of a mesh's vertices, by qhull. Throws NoVolume.
 TriangleMesh convex_hull(const TriangleMesh& mesh);
 
-/// The shapes with all meshes among them made one, of a part each: one tree to search.
+/// Joins all meshes into one, with a part for each, so that there is one tree to search.
 std::vector<PlacedShape> with_meshes_joined(const std::vector<PlacedShape>& shapes);
 
-/// Of the solids' union, about the origin of the frame that they are placed in. What they share counts once:
-/// it is measured along some 10 000 lines, and neglected below 0.1 % of the volume.
+/// Moments of the solids' union about the origin of the common frame. Shared volume counts once. It is
+/// measured along 10 000 lines, and neglected below 0.1 % of the volume.
 SolidMoments moments_of(const std::vector<PlacedShape>& shapes);
 
-/// Moments of inertia about the origin of solids of one density that weigh `mass` together [kg m^2]. Zero if
-/// they have no volume. What they share counts once if a mesh is among them, else as often as it is there:
-/// the inertia of a scene of boxes and cylinders is what it was in every recording.
+/// Moments of inertia about the origin of solids of one density with a total mass of `mass` [kg m^2]. Zero if
+/// they have no volume. Shared volume counts once if one of them is a mesh, else in each solid: so scenes of
+/// boxes and cylinders keep the inertia that they have in old recordings.
 Matrix3 inertia_of(const std::vector<PlacedShape>& shapes, double mass);
 
-/// Of a closed mesh, whose parts count as often as they overlap.
+/// Moments of a closed mesh; volume that parts share counts in each part.
 SolidMoments signed_moments(const TriangleMesh& mesh);
 
-/// What parts of closed surfaces overlap, as often as there are parts too many; zero where that is less than
-/// 0.1 % of `volume`.
+/// Moments of the volume that signed_moments() counts too often; zero if it is below 0.1 % of `volume`.
 SolidMoments shared_moments(const TriangleMesh& mesh, double volume);
 
-/// Some of a mesh's triangles, with their own vertices alone.
+/// A mesh of these triangles, with their vertices only.
 TriangleMesh cut_out(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& triangles);
 
-/// Adds a mesh that is placed in the frame of the other, but for its `parts`.
+/// Adds a mesh at a pose in the frame of `all`, without its `parts`.
 void append(const TriangleMesh& mesh, const Pose& pose, TriangleMesh& all);
 
-/// Box around the triangles, and around a shape along the axes of the frame that it is placed in [m].
+/// Bounding box of a mesh in its frame, and of a shape in the frame of its pose [m].
 Eigen::AlignedBox3d box_around(const TriangleMesh& mesh);
 Eigen::AlignedBox3d box_around(const PlacedShape& shape);
 
-/// A shape's surface in the frame that it is placed in: a mesh itself, facets within a round shape.
+/// A shape's surface in the frame of its pose: a mesh as it is, a round shape as facets inside it.
 TriangleMesh surface_of(const PlacedShape& shape);
 
-/// Whether closed parts overlap.
+/// True if closed parts of the mesh overlap.
 bool overlaps_itself(const TriangleMesh& mesh);
 
 }  // namespace mrhi

@@ -14,7 +14,7 @@
 namespace mrhi {
 namespace {
 
-/// Collects what urdfdom would print, for as long as it lives.
+/// Collects the messages of urdfdom during its lifetime, instead of printing them.
 class Complaints : public console_bridge::OutputHandler {
  public:
   Complaints() : lock_(mutex()), previous_(console_bridge::getOutputHandler()) {
@@ -40,7 +40,7 @@ class Complaints : public console_bridge::OutputHandler {
   std::string text_;
 };
 
-/// Each byte of ISO-8859-1 is the character of that number.
+/// UTF-8 from ISO-8859-1, in which each byte is the character's code point.
 std::string from_latin1(const std::string& text) {
   std::string utf8;
   for (const char c : text) {
@@ -51,7 +51,7 @@ std::string from_latin1(const std::string& text) {
   return utf8;
 }
 
-/// Text as editors and shells of Windows may write it, which say so by its first two bytes.
+/// UTF-8 from UTF-16 with a byte order mark, which Windows programs may write; empty for other text.
 std::optional<std::string> from_utf16(const std::string& text) {
   const bool little = text.compare(0, 2, "\xFF\xFE") == 0;
   if ((!little && text.compare(0, 2, "\xFE\xFF") != 0) || text.size() % 2 != 0) return std::nullopt;
@@ -65,7 +65,7 @@ std::optional<std::string> from_utf16(const std::string& text) {
     std::uint32_t code = unit(at);
     if (code >= 0xD800 && code < 0xDC00 && at + 3 < text.size())
       code = 0x10000 + ((code & 0x3FF) << 10 | (unit(at += 2) & 0x3FF));
-    const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;  // bytes behind the first
+    const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;  // continuation bytes
     constexpr std::uint32_t kFirst[] = {0, 0xC0, 0xE0, 0xF0};
     utf8 += static_cast<char>(kFirst[more] | code >> 6 * more);
     for (int i = more - 1; i >= 0; --i) utf8 += static_cast<char>(0x80 | (code >> 6 * i & 0x3F));
@@ -79,7 +79,7 @@ urdf::ModelInterfaceSharedPtr parsed(const std::string& xml) {
   std::string problem;
   try {
     model = urdf::parseURDF(xml);
-    problem = complaints.text();  // urdfdom goes on with half a link after some errors
+    problem = complaints.text();  // after some errors urdfdom returns an incomplete model
     if (!model && problem.empty()) problem = "urdfdom refuses it";
   } catch (const std::exception& error) {
     problem = error.what();
@@ -102,7 +102,7 @@ class Tree {
   bool is_fixed(const urdf::Link& link) const {
     return &link != &root_ && link.parent_joint->type == urdf::Joint::FIXED;
   }
-  /// The first link that fixed joints hold this one to, or the root; its place there.
+  /// The first link to which fixed joints connect this one, or the root, and the pose relative to it.
   LinkPart held_to(const urdf::LinkConstSharedPtr& link) const {
     LinkPart at{link, Pose{}};
     while (is_fixed(*at.link)) step_up(at);
@@ -123,7 +123,7 @@ class Tree {
   void check_joint(const urdf::Joint& joint) const {
     const std::string what = file_ + ": joint '" + text::one_line(joint.name, 60) + "' ";
     const bool known = joint.type == urdf::Joint::FIXED || joint.type == urdf::Joint::FLOATING;
-    if (!known && !moves(joint))  // other types urdfdom does not take
+    if (!known && !moves(joint))  // urdfdom refuses all other types
       throw SceneError(what +
                        "is planar; allowed: floating (a free body), fixed (a fixture, or a part of the body "
                        "that it is on), revolute, continuous, prismatic");
@@ -134,7 +134,7 @@ class Tree {
   const urdf::Link& root_;
 };
 
-/// Each mass that is given is 0, as other simulators have what never moves.
+/// True if all given masses are 0: other simulators mark fixtures so.
 bool is_weightless(const PlacedLink& placed) {
   const auto given = [](const urdf::Link& link) { return link.inertial != nullptr; };
   const auto none = [](const urdf::Link& link) { return !link.inertial || link.inertial->mass == 0.0; };
@@ -157,8 +157,8 @@ void read_limits(const urdf::Joint& given, Joint& joint) {
   joint.start = std::min(std::max(0.0, joint.lower), joint.upper);
 }
 
-/// On the nearest body above; links without geometry on fixed joints are none.
-void hang(const UrdfDocument& document, const Scene& scene, const urdf::Joint& given, Joint& joint) {
+/// Sets the parent: the nearest body above. Links without geometry on fixed joints are no bodies.
+void set_parent(const UrdfDocument& document, const Scene& scene, const urdf::Joint& given, Joint& joint) {
   joint.in_parent = to_pose(given.parent_to_joint_origin_transform);
   urdf::LinkConstSharedPtr link = document.model->getLink(given.parent_link_name);
   while (link != document.model->getRoot()) {
@@ -181,7 +181,7 @@ Joint read_joint(const std::string& file, const UrdfDocument& document, const Sc
   joint.name = given.name;
   joint.kind = given.type == urdf::Joint::PRISMATIC ? JointKind::sliding : JointKind::turning;
   const Vector3 axis{given.axis.x, given.axis.y, given.axis.z};
-  const Range& length = joint_ranges::kAxis;  // in parts: squares of what is beyond are no numbers
+  const Range& length = joint_ranges::kAxis;  // beyond it, squares would not be finite
   if (!axis.allFinite() || !length.contains(axis.stableNorm()))
     throw SceneError(what + "axis " + text::vector(axis) + "; allowed: a direction, its length " +
                      length.describe());
@@ -190,7 +190,7 @@ Joint read_joint(const std::string& file, const UrdfDocument& document, const Sc
   joint.child = static_cast<int>(child);
   joint.in_child = scene.bodies[child].link_in_body;
   read_limits(given, joint);
-  hang(document, scene, given, joint);
+  set_parent(document, scene, given, joint);
   if (given.dynamics) {
     joint.damping = given.dynamics->damping;
     joint.friction = given.dynamics->friction;
@@ -202,7 +202,7 @@ Joint read_joint(const std::string& file, const UrdfDocument& document, const Sc
 
 UrdfDocument parse_urdf(const std::string& source, const std::string& given) {
   std::string xml = is_utf8(given) ? given : from_utf16(given).value_or(from_latin1(given));
-  xml.erase(xml.find_last_not_of('\0') + 1);  // C programs write the end of their text
+  xml.erase(xml.find_last_not_of('\0') + 1);  // C programs may write the terminating zero
   if (const auto wrong = xml_danger(xml)) throw SceneError(source + ": bad URDF: " + *wrong);
   UrdfDocument document;
   try {

@@ -21,10 +21,10 @@
 
 namespace mrhi {
 
-/// What a loader assumed: one line for each kind of assumption, with the things that it concerns.
+/// Assumptions of a loader: one line for each kind, with the items that it concerns.
 class Warnings {
  public:
-  /// `what` is the line's beginning, `item` a thing and its value.
+  /// `what`: the beginning of the line; `item`: a name and its value.
   void add(const std::string& what, const std::string& item) {
     auto line = std::find_if(lines_.begin(), lines_.end(), [&](const auto& l) { return l.first == what; });
     if (line == lines_.end()) line = lines_.insert(line, {what, {}});
@@ -54,12 +54,12 @@ struct NormalUrdf {
   std::map<std::string, double> friction;  ///< Coulomb's coefficient, by link: <lateral_friction>, <mu1>
 };
 
-/// Rewrites a URDF as people write it: names that topics and frames can have, complete limits and inertias, a
-/// world above a root that has a shape, no tags of other programs. What is changed in meaning is a warning.
-/// Throws std::runtime_error, whose text goes on from the file's name.
+/// Rewrites a URDF in the form that urdfdom reads: valid names, complete limits and inertias, a world above a
+/// root that has a shape, no tags of other programs. A change of meaning causes a warning. Throws
+/// std::runtime_error, whose text continues a message after the file's name.
 NormalUrdf normal_urdf(const std::string& xml, Warnings& warnings);
 
-/// A URDF as urdfdom reads it once it is normal_urdf(). A root link with a shape hangs on one without.
+/// A parsed URDF. Its root link has no shape.
 struct UrdfDocument {
   urdf::ModelInterfaceSharedPtr model;
   std::vector<urdf::LinkConstSharedPtr> links;  ///< in the order of the file (urdfdom sorts by name)
@@ -67,61 +67,62 @@ struct UrdfDocument {
   Warnings warnings;
 };
 
-/// `source` names the XML in messages. Throws SceneError with urdfdom's complaints on one line; urdfdom
-/// itself prints nothing.
+/// Parses a URDF. `source` names it in messages. Throws SceneError with urdfdom's messages on one line;
+/// urdfdom itself prints nothing.
 UrdfDocument parse_urdf(const std::string& source, const std::string& xml);
 
 Pose to_pose(const urdf::Pose& pose);
 
-/// Throws SceneError that begins with `element` for parts of a colour that are not from 0 to 1.
+/// Throws SceneError that begins with `element` for a component of a colour outside 0 to 1.
 void check_color(const std::string& element, const std::array<float, 4>& rgba);
 
-/// Whether it turns or slides.
+/// True if the joint is revolute, continuous or prismatic.
 bool moves(const urdf::Joint& joint);
 
-/// A link that is a part of a body, and its place in the frame of the body's first link.
+/// A link that is a part of a body, and its pose in the frame of the body's first link.
 struct LinkPart {
   urdf::LinkConstSharedPtr link;
   Pose pose;
 };
 
-/// A body: a link below the root and those that fixed joints hold to it.
+/// A body: a link below the root, and those that fixed joints connect to it.
 struct PlacedLink {
   urdf::LinkConstSharedPtr link;
-  bool fixed;                    ///< on fixed joints all the way, or of mass 0; else it moves
-  Pose in_world;                 ///< the link's frame, all joints at 0; the root is the world
-  std::vector<LinkPart> merged;  ///< not of a fixture, whose links are fixtures themselves
+  bool fixed;     ///< connected to the root by fixed joints only, or of mass 0
+  Pose in_world;  ///< pose of the link's frame with all joints at 0; the root is the world
+  std::vector<LinkPart>
+      merged;  ///< other links of the body; empty for a fixture, each of whose links is a fixture
 };
 
 bool has_shape(const PlacedLink& placed);
 
-/// All bodies, in the order of their first links in the URDF. Throws SceneError for joints that make no
-/// scene.
+/// All bodies, in the order of their first links in the URDF. Throws SceneError for joints of a kind that a
+/// scene cannot have.
 std::vector<PlacedLink> place_links(const std::string& urdf_file, UrdfDocument& document);
 
-/// The joints that turn or slide of a URDF, in the order of their links, between the scene's bodies, which
-/// are known. They begin at 0, or at the limit that is nearest to it. Throws SceneError.
+/// The moving joints of a URDF between the bodies of the scene, in the order of their links. They start at 0,
+/// or at the limit nearest to it. Throws SceneError.
 std::vector<Joint> read_joints(const std::string& urdf_file, const UrdfDocument& document,
                                const Scene& scene);
 
-/// Turns a URDF's geometry into shapes; each mesh file is read once.
+/// Converts a URDF's geometry to shapes; reads each mesh file once.
 class ShapeReader {
  public:
-  /// Paths of meshes start at `folder`.
+  /// `folder`: base of relative mesh paths.
   ShapeReader(std::string source, std::string folder, const SceneOptions& options, Warnings& warnings)
       : source_(std::move(source)), folder_(std::move(folder)), options_(options), warnings_(warnings) {}
 
-  /// Reads the mesh files of all these links together, which takes less time than one by one.
+  /// Reads the mesh files of all these links together, which is faster than one by one.
   void prepare(const std::vector<urdf::LinkConstSharedPtr>& links);
 
-  /// `element` names the place in messages. Throws SceneError. A solid's mesh is closed or its hull; nothing
-  /// is returned for one that is a flat sheet.
+  /// `element` names the place in messages. With `solid`, the mesh is closed or becomes its hull. Returns
+  /// nothing for a flat sheet. Throws SceneError.
   std::optional<Shape> read(const urdf::Geometry& geometry, const std::string& element, bool solid);
 
   const std::vector<SceneFile>& files() const { return files_; }
 
  private:
-  /// A mesh as URDFs name it: which file, how large, and its hull or itself.
+  /// A mesh as a URDF names it: file, scale, and whether its hull is used.
   struct Named;
   Named named(const urdf::Mesh& mesh) const;
   std::string find_file(const std::string& uri) const;
@@ -137,47 +138,36 @@ class ShapeReader {
   const SceneOptions& options_;
   Warnings& warnings_;
   std::map<std::string, LoadedMesh> loaded_;                           // by file and scale
-  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;  // the same, as they are used
+  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;  // the same, as shapes use them
   std::vector<SceneFile> files_;
 };
 
-/// The bodies of a URDF in its order, complete but for their materials, which are the default, its joints,
-/// and what was assumed. Links without any geometry on fixed joints only place others and are left out.
-/// Throws SceneError. `source` names the text in messages; paths of meshes start at `folder`.
+/// Reads the bodies of a URDF in its order, its joints, and the assumptions made. Materials are the default.
+/// Links without geometry on fixed joints only place other links, and are left out. `source` names the text
+/// in messages; `folder`: base of relative mesh paths. Throws SceneError.
 void read_urdf(const std::string& source, const std::string& folder, const std::string& xml,
                const SceneOptions& options, Scene& scene);
 
-/// Adds one of them.
+/// Adds one body of a URDF to the scene, likewise.
 void read_body(const std::string& source, const std::string& folder, UrdfDocument& document,
                const PlacedLink& placed, const SceneOptions& options, Scene& scene);
 
-/// The one body with a shape of a URDF, where that has it. Throws SceneError for none and several.
+/// The only body of a URDF that has a shape. Throws SceneError if there are none or several.
 PlacedLink only_body(const std::string& source, UrdfDocument& document);
 
-/// arrange_joints(), which throws SceneError here.
+/// Calls arrange_joints(), but throws SceneError.
 void join_bodies(const std::string& source, Scene& scene);
-/// Throws SceneError for bodies that begin inside each other.
+/// Throws SceneError for bodies that overlap at the start.
 void check_overlaps(const std::string& source, Scene& scene);
 
-/// Sets gravity, bounds, materials, twists and joints of a scene whose bodies and joints are known, from its
-/// YAML file. A material keeps what the file does not name. Throws SceneError.
+/// Sets gravity, bounds, materials, twists, joints and operators of a scene from its YAML file. Properties
+/// that the file does not name stay as they are. Throws SceneError.
 void apply_scene_yaml(const std::string& yaml_file, Scene& scene);
 
-/// Sets joints from the text of such a file's entry, likewise.
+/// Sets joints from the text of the entry `joints` of such a file. Throws SceneError.
 void apply_joints_yaml(const std::string& source, const std::string& yaml, Scene& scene);
 
-/// Sets a body's material from the text of such a file's entry; `source` names it in messages. Throws
-/// SceneError.
-void apply_material_yaml(const std::string& source, const std::string& yaml, Body& body);
-
-/// Sets gravity, bounds, materials, twists and joints of a scene whose bodies and joints are known, from its
-/// YAML file. A material keeps what the file does not name. Throws SceneError.
-void apply_scene_yaml(const std::string& yaml_file, Scene& scene);
-
-/// Sets joints from the text of such a file's entry, likewise.
-void apply_joints_yaml(const std::string& source, const std::string& yaml, Scene& scene);
-
-/// Sets a body's material from the text of such a file's entry; `source` names it in messages. Throws
+/// Sets a body's material from the text of an entry of `materials`; `source` names it in messages. Throws
 /// SceneError.
 void apply_material_yaml(const std::string& source, const std::string& yaml, Body& body);
 

@@ -41,13 +41,13 @@ std::optional<Sizes> sizes_if(const Shape& shape) {
   return one == nullptr ? std::nullopt : std::optional<Sizes>(sizes(*one));
 }
 
-/// What was given, be it no number that a size may be.
+/// The number in a word, also if it is not a valid size; NaN if there is none.
 double size_in(const std::string& word) {
   std::istringstream stream(word);
   stream.imbue(std::locale::classic());
   double size = 0.0;
   if (stream >> size && stream.eof()) return size;
-  const std::optional<double> other = text::to_number(word);  // infinity, and what is beyond a double
+  const std::optional<double> other = text::to_number(word);  // infinity, or too large for a double
   return other && std::isinf(*other) ? *other : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -62,7 +62,7 @@ bool begins_with(const std::string& text, const std::string& prefix) {
   return text.compare(0, prefix.size(), prefix) == 0;
 }
 
-/// A kind and its sizes, as as_filename() has written them.
+/// A kind and its sizes, read from the result of as_filename().
 struct GivenShape {
   const ShapeKind* kind;
   Sizes size;
@@ -88,14 +88,14 @@ void check_extent(const Vector3& extent, double part, const char* where) {
                            (part > 1.0 ? "; scale=\"0.001 0.001 0.001\" makes metres of millimetres" : ""));
 }
 
-/// Of a thing that collides each size, as a box's; a picture may be flat.
+/// Checks all sizes of a collision mesh, like a box's. A visual mesh may be flat.
 void check_sizes(const TriangleMesh& mesh, bool solid) {
   const Vector3 extent = box_around(mesh).sizes();
   check_extent(extent, extent.maxCoeff(), "along the longest axis");
   if (solid) check_extent(extent, extent.minCoeff(), "along each axis");
 }
 
-/// What %20 and the like stand for.
+/// Decodes percent-encoding.
 std::string decoded(const std::string& uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -108,15 +108,15 @@ std::string decoded(const std::string& uri) {
   return text;
 }
 
-/// Whether the folder's package.xml has that name.
+/// True if the folder has a package.xml with that name.
 bool is_package(const fs::path& folder, const std::string& name) {
   constexpr std::size_t kMaxBytes = 100000;
   const std::string text = file_text((folder / "package.xml").string(), kMaxBytes).value_or("");
   return text.find("<name>" + name + "</name>") != std::string::npos;
 }
 
-/// NAME/PATH in the folders above, as other simulators find packages: in one of them, or in one that has the
-/// name or whose package.xml has it.
+/// Finds the file NAME/PATH of a package in the folders above, as other simulators do: below one of them, or
+/// in one that has the package's name or a package.xml with that name.
 std::string find_above(const fs::path& folder, const std::string& in_package) {
   const std::string name = in_package.substr(0, in_package.find('/'));
   std::error_code error;
@@ -143,7 +143,7 @@ std::string find_ignoring_case(fs::path folder, const std::string& path) {
       folder /= part;
       continue;
     }
-    std::string found;  // the first by the alphabet
+    std::string found;  // the alphabetically first
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
       const std::string name = entry.path().filename().string();
       if (in_lower_case(name) == in_lower_case(part.string()) && (found.empty() || name < found))
@@ -212,8 +212,7 @@ ShapeReader::Named ShapeReader::named(const urdf::Mesh& mesh) const {
   return {uri, find_file(uri), {mesh.scale.x, mesh.scale.y, mesh.scale.z}, hull};
 }
 
-/// As it is written, or as others write it: with backslashes, with blanks as %20, or in upper and lower case
-/// that their machine does not tell apart.
+/// Finds a mesh file by its name as written, with backslashes as slashes, percent-decoded, or ignoring case.
 std::string ShapeReader::find_file(const std::string& uri) const {
   const auto given = options_.mesh_files.find(uri);
   if (given != options_.mesh_files.end()) return given->second;
@@ -296,7 +295,7 @@ std::optional<Shape> ShapeReader::make(const std::string& name, const std::vecto
   return kind.make(size);
 }
 
-/// What is only looked at may be missing: the collision shape is drawn in its place.
+/// A visual mesh may be missing: the collision shape is then drawn instead.
 std::optional<Shape> ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid) {
   const Named name = named(mesh);
   const std::string what = "mesh '" + text::one_line(name.uri, 200) + "' ";

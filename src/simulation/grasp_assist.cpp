@@ -6,9 +6,9 @@
 namespace mrhi {
 namespace {
 
-/// Depth that a fingertip pad complies by: up to there, the springs of contact hold a body [m].
+/// Compression of a fingertip pad up to which contact springs alone hold a body [m].
 constexpr double kPadDepth = 0.003;
-/// A hand that is deeper in a fixture is rendered elsewhere, and grasps nothing where it is tracked [m].
+/// Largest depth in a fixture at which a hand grasps: a deeper hand is rendered elsewhere [m].
 constexpr double kBuriedDepth = 0.015;
 /// Compliance, beyond its depth, of a hand inside a body that it must not grasp: more than any finger moves
 /// in a step, so that it applies no force within the step either [m].
@@ -300,7 +300,7 @@ std::vector<Grip>::iterator GraspAssist::find_grip(std::size_t slot, std::size_t
                       [&](const Grip& grip) { return objects_.is_in(grip, slot, body); });
 }
 
-/// Begins a grip. A body that was taken before and needed no support keeps its place in the hand.
+/// Begins a grip. A body that was acquired before and needed no support keeps its place in the hand.
 /// The springs of a grip on a linkage act on the link that the thumb or the palm touches.
 void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, double fraction,
                        SimulationState& state) const {

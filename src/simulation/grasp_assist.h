@@ -9,13 +9,13 @@
 
 namespace mrhi {
 
-/// Grasp assist, for hands that feel nothing and close through things. Two parts:
+/// Grasp assist for hands without force feedback, which close through objects. It has two parts:
 ///
 /// Compliance: a finger that closes on a body adds no force by its own motion until another part of the hand
 /// touches an opposite face. The first finger then does not knock the body away.
 ///
-/// Support: a hand that has a body between two opposing sides, deeper than a fingertip pad, takes it (Grip).
-/// Contacts act as ever. The grip becomes active only if the body slips, or its contacts no longer oppose
+/// Support: a hand acquires a body between opposing contact groups, deeper than a fingertip pad (Grip).
+/// Contacts act as usual. The grip becomes active only if the body slips, or its contacts no longer oppose
 /// each other, and it has left its place in the hand: springs of bounded force then add what the contacts
 /// lack, until the hand opens.
 ///

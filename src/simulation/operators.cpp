@@ -165,18 +165,18 @@ void Operators::note_momenta(std::size_t body, const SimulationState& state) {
   touched_.push_back({body, state.bodies[body].linear_momentum, state.bodies[body].angular_momentum});
 }
 
-// Of an object that flies on with p' = p + sum q, each impulse q at the arm r and, in a step with impacts,
-// from the time t on, the flight and StepChanges::delay_impacts() make
+// An object has the momentum p' = p + sum q after the step. Each impulse q has the arm r and, in a step with
+// impacts, acts from the time t on. The flight and StepChanges::delay_impacts() give
 //
 //     x' = x + h p' / m - sum t q / m,      x' x p' + L' = x x p + L + sum (x + t p' / m + r) x q
 //
-// so that q acts at x + r + t p' / m. There its opposite acts on the operator, whose x' = x + h P' / M has no
-// part in its angular momentum about the origin. With that both keep their sum to rounding. Where all t are 0
-// and nothing else acts on the object, the sums are p' - p and x x (p' - p) + L' - L, without its contacts.
+// so q acts at x + r + t p' / m. Its opposite acts there on the operator, whose displacement h P' / M does
+// not change its angular momentum about the origin. So both conserve their sum to rounding. If all t are 0
+// and nothing else acts on the object, the sums are p' - p and x x (p' - p) + L' - L, whatever its contacts.
 Twist Operators::react(const ContactStep& step, int body) const {
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // on objects, about the origin [N], [N m]
   Twist impulse;                                              // likewise [N s], [N m s]
-  // Where what begins to act on an object at `time` does so.
+  // Position of a point on an object at `time`, when an impulse begins to act there.
   const auto moved = [&](const Vector3& point, std::size_t object, double time) -> Vector3 {
     if (time <= 0.0 || !scene_.bodies[object].flies) return point;
     return point + time / scene_.bodies[object].mass * step.bodies[object].linear_momentum;

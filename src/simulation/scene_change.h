@@ -13,14 +13,14 @@ namespace mrhi {
 /// the same order. All are awake. A body that only `after` has is at its start and has appeared there.
 SimulationState carried_over(const SimulationState& state, const Scene& before, const Scene& after);
 
-/// The same for what was shown last, without its events.
+/// Converts the last result likewise, without its events.
 FrameResult carried_over(const FrameResult& result, const Scene& before, const Scene& after);
 
-/// Ends what hands do with a body, in the fixed order of events.
+/// Ends all interactions with a body, in the fixed order of events.
 std::vector<Event> end_interactions_with(std::size_t body, SimulationState& state);
 
-/// Bodies that follow the parameters' material take this one. Throws std::invalid_argument naming the body
-/// whose own numbers do not go with it; the scene is then unchanged.
+/// Sets the material of bodies that follow the parameters. Throws std::invalid_argument that names a body
+/// whose own values conflict with it; the scene is then unchanged.
 void set_default_material(const Material& material, Scene& scene);
 
 }  // namespace mrhi

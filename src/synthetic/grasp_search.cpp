@@ -317,15 +317,15 @@ Misses misses(const Grasp& grasp, double gap) {
 }
 
 /// A grasp in the axes of a Closing, and how much its fingertips miss their contacts [m].
-struct Fit {
+struct GraspFit {
   Grasp grasp;
   double error;
 };
 
 /// The wrist of a shipped grasp, moved to where the fingertips come nearest to their contacts.
-Fit fit(const Closing& closing) {
+GraspFit fit(const Closing& closing) {
   constexpr double kFirstStep = 0.02, kLastStep = 0.0025, kMoveCost = 0.02;
-  std::optional<Fit> best;
+  std::optional<GraspFit> best;
   for (const char* like : {"cube", "long_cuboid"}) {
     Grasp grasp = shipped_grasp(like);
     if (std::string(like) == "long_cuboid") grasp = grasp.turned(turn(-90.0, Vector3::UnitY()));
@@ -347,7 +347,7 @@ Fit fit(const Closing& closing) {
       if (y == from_y && z == from_z) step *= 0.5;
     }
     grasp.wrist.position = wrist + Vector3(0.0, y, z);
-    if (!best || least < best->error) best = Fit{grasp, least};
+    if (!best || least < best->error) best = GraspFit{grasp, least};
   }
   return *best;
 }
@@ -400,7 +400,7 @@ std::optional<Grasp> find_grasp(const Surface& surface, const std::vector<Place>
     for (const double sign : {1.0, -1.0}) {
       const auto closing = make_closing(surface, places[option.place], option.palm, sign);
       if (!closing) continue;
-      const Fit found = fit(*closing);
+      const GraspFit found = fit(*closing);
       if (found.error > kMaxError) continue;
       for (const double opening : {1.0, 0.6, 0.3}) {
         Grasp grasp = placed(found.grasp, *closing);

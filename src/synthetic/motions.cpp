@@ -8,8 +8,8 @@
 namespace mrhi {
 namespace {
 
-constexpr double kApproach = 0.10;  // straight to the object with the hand open [m]
-constexpr double kAside = 0.16;     // further away, where the hand comes from [m]
+constexpr double kApproachLength = 0.10;  // straight to the object with the hand open [m]
+constexpr double kAside = 0.16;           // further away, where the hand comes from [m]
 
 /// Opens the hand around an object at `at`, withdraws it to `off` along `retreat` and on to `aside`.
 void release(Script& script, const GraspPostures& postures, const Pose& at, const Pose& off,
@@ -76,7 +76,8 @@ void carry_and_release(Script& script, const Grasp& grasp, const GraspPostures& 
   const Pose wrist = target * grasp.wrist;
   const Vector3 retreat = carried.orientation * grasp.retreat;
   release(script.then(1.4, wrist, postures.pressing).hold(0.6), postures, wrist,
-          shifted(wrist, kApproach * retreat), retreat, shifted(wrist, kApproach * retreat + aside));
+          shifted(wrist, kApproachLength * retreat), retreat,
+          shifted(wrist, kApproachLength * retreat + aside));
 }
 
 ScriptedMotion reach_and_carry(const char* object, const Vector3& aside) {
@@ -173,7 +174,7 @@ ScriptedMotion slap() {
   return script.at(2.3 + stroke, shifted(through, {0.0, -0.12, -0.02}), relaxed_posture()).motion();
 }
 
-constexpr double kThumbDepth = 0.006, kFingerDepth = 0.003;  // of the tips beyond the surface [m]
+constexpr double kThumbOverlap = 0.006, kFingerOverlap = 0.003;  // of the tips beyond the surface [m]
 
 /// Wrist pose for pointing away from the body, palm down.
 Pose pointing_forward() {
@@ -192,9 +193,9 @@ Grasp bar_grasp(double width) {
   const double x = 0.5 * width;
   const Vector3 right = Vector3::UnitX();
   return {hand_pose({-0.0443, -0.1067, -0.0186}, {0.878, 0.377, 0.296}, {0.311, -0.918, 0.246}),
-          {{0, {-x, 0.0, 0.0}, -right, kThumbDepth},
-           {1, {x, 0.0, 0.009}, right, kFingerDepth},
-           {2, {x, 0.0, -0.009}, right, kFingerDepth}},
+          {{0, {-x, 0.0, 0.0}, -right, kThumbOverlap},
+           {1, {x, 0.0, 0.009}, right, kFingerOverlap},
+           {2, {x, 0.0, -0.009}, right, kFingerOverlap}},
           posture_of_degrees(
               {{25, 0, 0, 0, -4}, {5, 50, 50, 80, 80}, {15, 38, 38, 95, 95}, {30, 25, 25, 60, 60}, {35}}),
           0.014,
@@ -206,7 +207,7 @@ Grasp rail_grasp(double width) {
   const double z = 0.5 * width;
   const Vector3 up = Vector3::UnitZ();
   return {hand_pose({0.001, -0.0759, -0.0371}, {0.278, 0.774, -0.568}, {0.399, -0.631, -0.665}),
-          {{0, {0.0, 0.0, z}, up, kThumbDepth},
+          {{0, {0.0, 0.0, z}, up, kThumbOverlap},
            {1, {0.018, 0.0, -z}, -up, 0.002},
            {2, {0.0, 0.0, -z}, -up, 0.002},
            {3, {-0.018, 0.0, -z}, -up, 0.002}},
@@ -292,10 +293,10 @@ ScriptedMotion squeeze_tongs() {
   const Grasp open_grasp = tongs_grasp(0.29);
   const GraspPostures half(tongs_grasp(0.2)), closed(tongs_grasp(0.1));
   const Pose at = Pose{scene_object(), Quaternion::Identity()} * open_grasp.wrist;
-  const Pose before = shifted(at, kApproach * open_grasp.retreat);
+  const Pose before = shifted(at, kApproachLength * open_grasp.retreat);
   const Vector3 aside(0.05, -kAside, 0.02);
   Grip grip(Script("tongs"), open_grasp, scene_object());
-  const GraspPostures& open = grip.take(aside, kApproach, 0.15).postures();
+  const GraspPostures& open = grip.take(aside, kApproachLength, 0.15).postures();
   Script& script = grip.script();
   for (int squeeze = 0; squeeze < 2; ++squeeze)
     script.then(1.0, at, closed.pressing).hold(0.3).then(1.0, at, half.pressing).hold(0.2);
@@ -370,7 +371,7 @@ const MotionEntry kMotions[] = {
 ScriptedMotion reach_and_carry(const char* scene, const Grasp& grasp, const Vector3& object,
                                const Vector3& aside) {
   Grip grip(Script(scene), grasp, object);
-  grip.take(aside, kApproach, 0.15).hold(0.4);
+  grip.take(aside, kApproachLength, 0.15).hold(0.4);
   carry_and_release(grip.script(), grasp, grip.postures(), object,
                     {{0.0, 0.0, 0.08}, turn(25.0, Vector3::UnitZ())}, aside);
   return grip.script().motion();

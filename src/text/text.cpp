@@ -27,9 +27,9 @@ std::string number(double value) {
 }
 
 std::string exact(double value) {
-  constexpr int kEnough = 17;
+  constexpr int kMaxDigits = 17;  // identify every double
   int digits = 6;
-  while (digits < kEnough && to_number(with_digits(value, digits)) != value) ++digits;
+  while (digits < kMaxDigits && to_number(with_digits(value, digits)) != value) ++digits;
   return with_digits(value, digits);
 }
 

@@ -207,8 +207,8 @@ bool is_utf8(const std::string& text) {
 }
 
 std::optional<std::string> xml_danger(const std::string& xml) {
-  if (xml.size() > kMostXmlBytes)
-    return "is longer than " + std::to_string(kMostXmlBytes) + " bytes; allowed: at most that";
+  if (xml.size() > kMaxXmlBytes)
+    return "is longer than " + std::to_string(kMaxXmlBytes) + " bytes; allowed: at most that";
   if (has_control_characters(xml) || !is_utf8(xml))
     return "is no text; allowed: UTF-8 or ISO-8859-1 without control characters";
   Tags tags(xml);

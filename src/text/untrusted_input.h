@@ -6,7 +6,7 @@
 
 namespace mrhi {
 
-constexpr std::size_t kMostXmlBytes = 4 * 1024 * 1024;
+constexpr std::size_t kMaxXmlBytes = 4 * 1024 * 1024;
 
 bool is_utf8(const std::string& text);
 

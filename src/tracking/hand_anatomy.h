@@ -29,7 +29,7 @@ constexpr double kPalmWidth = 0.0842;
 constexpr std::array<double, kFingers> kFingerRadii{{0.0094, 0.0090, 0.0088, 0.0084, 0.0074}};
 }  // namespace anatomy
 
-/// A hand's size as a factor on the adult's. Beyond these it is in a wrong unit, or of wrong joints.
+/// Limits of a hand's size, as a factor on the adult's. Beyond them the unit or the joints are wrong.
 constexpr double kSmallestHand = 0.3, kLargestHand = 2.5;
 
 }  // namespace mrhi

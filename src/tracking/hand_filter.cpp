@@ -47,8 +47,8 @@ bool has_point(const Hand& hand, std::size_t point) {
   return point < 2 || hand.capsules[(point - 2) / 2].radius > 0.0;
 }
 
-/// Only of the capsules' ends: palm and wrist are always there, estimated where they are not seen. A joint
-/// that two bones share counts twice.
+/// Counts the ends of capsules only: palm and wrist always exist, and may be estimates. A joint that two
+/// bones share counts twice.
 double rms_speed(const HandVelocity& velocity, const Hand& hand) {
   double sum = 0.0;
   int count = 0;

@@ -29,7 +29,7 @@ Vector3 mirrored(const Vector3& point, Side side) {
   return side == Side::left ? Vector3(point.x(), -point.y(), point.z()) : point;
 }
 
-/// The wrist moves against the palm, so it serves only where the metacarpals' bases are not known.
+/// The wrist moves relative to the palm, so it is used only if the metacarpals' bases are unknown.
 Correspondences correspondences(const HandJoints& hand) {
   Correspondences points;
   points.add(Vector3::Zero(), hand.palm_centre);
@@ -43,7 +43,7 @@ Correspondences correspondences(const HandJoints& hand) {
   return points;
 }
 
-/// Where the anatomical palm lies in the device's frame.
+/// Fit of the anatomical palm in the device's frame.
 struct PalmFit {
   Pose palm;
   double scale = 1.0;  ///< of this hand to the adult's
@@ -53,9 +53,8 @@ struct PalmFit {
   Vector3 place(const Vector3& anatomical) const { return palm * (scale * mirrored(anatomical, side)); }
 };
 
-/// The rotation, scale and translation that bring the anatomical palm closest to the joints given (least
-/// squares, Umeyama 1991). Nothing if they do not fix it: fewer than three, in one line, or of no hand's
-/// size.
+/// The rotation, scale and translation that map the anatomical palm onto the given joints by least squares.
+/// Empty if they do not determine it: fewer than three, collinear, or not of a hand's size.
 ///
 ///     sum |s R a_i + t - m_i|^2 -> min,   t = mean m - s R mean a
 /// over a scale s, a rotation R and a place t, a_i of the adult's palm, m_i measured in the device's frame
@@ -103,8 +102,8 @@ std::array<std::optional<Vector3>, 5> complete_finger(const HandJoints& joints, 
   return completed;
 }
 
-/// Joint i is where bone i begins and bone i - 1 ends, in the device's frame; capsules are in world. A bone
-/// without length would have no direction: it is left out, as if the tracker had not given it.
+/// Joint i is the start of bone i and the end of bone i - 1, in the device's frame; capsules are in world. A
+/// bone without length has no direction, and is left out as if it were missing.
 void place_finger(const HandJoints& joints, const PalmFit& fit, std::size_t finger,
                   const Pose& device_in_world, Hand& hand) {
   const auto completed = complete_finger(joints, fit, finger);
@@ -212,8 +211,8 @@ bool has_bone(const HandJoints& hand) {
   return false;
 }
 
-/// The first that is found, from numbers to bones to the palm as a whole, so that what comes later may count
-/// on what came before. Without one, `fit` is the hand's.
+/// The first defect, or empty. Checks numbers, then bones, then the whole palm; later checks rely on earlier
+/// ones. Without a defect, `fit` is the hand's fit.
 std::string defect(const HandJoints& hand, std::optional<PalmFit>& fit) {
   const std::pair<const char*, float> strengths[] = {{"confidence", hand.confidence},
                                                      {"grab strength", hand.grab_strength},
@@ -278,8 +277,7 @@ Hand complete_hand(const HandJoints& joints, const Pose& device_in_world) {
   return completed(joints, *fit, device_in_world);
 }
 
-/// A frame that has hands, but none that is right, is nothing: taken as empty, the hands that there are would
-/// count as gone.
+/// Returns nothing for a frame whose hands are all unusable: as an empty frame it would end these hands.
 std::optional<HandFrame> complete_frame(const JointsFrame& joints, const Pose& device_in_world,
                                         std::vector<std::string>& defects) {
   HandFrame frame;

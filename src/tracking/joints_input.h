@@ -99,10 +99,10 @@ class StampSteps {
         false;  ///< the stream's first frame alone was of another clock; nothing is corrected
   };
 
-  /// A frame's stamp, and when it was received, where that is known.
+  /// A frame's stamp, and its time of receipt if known.
   Verdict take(Nanoseconds stamp, const std::optional<Nanoseconds>& receipt);
 
-  /// What is added to the stamps, 0 before the first step. Streams of one clock share it.
+  /// Correction of the stamps, 0 before the first step. Streams of one clock share it.
   Nanoseconds correction() const { return correction_; }
   void share(Nanoseconds correction) { correction_ = correction; }
 
@@ -113,7 +113,7 @@ class StampSteps {
   };
   Verdict accept(const Frame& frame, bool anew = false);
 
-  std::optional<Frame> last_;  // that was accepted, with its own stamp
+  std::optional<Frame> last_;  // accepted, with its original stamp
   std::optional<Frame> off_;   // the frame before, if it was off
   Nanoseconds interval_ = 0;   // between the last two accepted
   Nanoseconds lead_ = 0;       // largest of those accepted, fading: clocks drift
@@ -121,25 +121,25 @@ class StampSteps {
   std::uint64_t accepted_ = 0;
 };
 
-/// One frame of input, or why it cannot be used.
+/// One frame of input, or the reason why it cannot be used.
 struct SourceFrame {
   std::optional<HandFrame> frame;
-  std::optional<Nanoseconds> arrival;  ///< when it was received, by the receiver's clock, where that is known
-  bool waits = false;                  ///< for the other hand's, with which it comes
+  std::optional<Nanoseconds> arrival;  ///< time of receipt by the receiver's clock, if known
+  bool waits = false;                  ///< for the frame of the other hand
   bool first_was_off = false;          ///< the frame before the last of its stream was of another clock
   std::string reason;                  ///< kind of refusal, for counting; empty if there is a frame
   std::string detail;                  ///< the particular case
   std::vector<std::string> left_out;   ///< hands of the frame that cannot be used, each with its defect
-  /// What was put right in it, by kind, and the particular case.
+  /// Corrected faults: kind, and the particular case.
   std::vector<std::pair<std::string, std::string>> corrected;
 };
 
 /// The content of one message of a tracker.
 struct TrackerFrame {
-  std::string stream;                  ///< who sent it, and where to: those of one stream have one clock
+  std::string stream;                  ///< sender and topic; a stream has one clock
   JointsFrame joints;                  ///< in the tracker's own frame and unit; stamp 0: not set
-  std::optional<Side> side;            ///< the only one that it has, if those of the other come on their own
-  std::optional<Nanoseconds> receipt;  ///< when it was received, where that is known
+  std::optional<Side> side;            ///< its only side, if hands of the other side are on another topic
+  std::optional<Nanoseconds> receipt;  ///< time of receipt, if known
   bool one_of_a_side = true;           ///< it never has two hands of one side
 };
 

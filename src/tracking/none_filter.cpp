@@ -2,7 +2,7 @@
 
 namespace mrhi {
 
-/// The hand as it is tracked.
+/// Returns the newest sample.
 extern const HandFilter none_filter{
     "none", 0, []() -> std::vector<FilterSetting> { return {}; },
     [](const FilterConfiguration&) { return 1; },

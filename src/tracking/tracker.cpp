@@ -277,15 +277,14 @@ Hand filtered_through_change(const Hand& hand, Nanoseconds stamp, const Configur
   return blend(before, now, minimum_jerk(u));
 }
 
-/// The hand with its fingers' bones turned, from how they were in the palm of `before`, no faster towards how
-/// they are in `tracked` than `speed` allows in `elapsed` seconds. Bones keep their lengths, and joints stay
-/// together as tracked. Thumb and fingers are slowed from the first bone that is tracked beyond the
-/// metacarpal.
+/// The tracked hand with the rotation of its fingers' bones in the palm limited to `speed` [rad/s] since
+/// `before`, over `elapsed` seconds. Bones keep their lengths, and joints stay connected as tracked. The
+/// limit applies from the first tracked bone after the metacarpal.
 Hand slowed(const Hand& before, const Hand& tracked, double speed, double elapsed) {
   Hand hand = tracked;
   const Quaternion palm = tracked.palm.orientation * before.palm.orientation.conjugate();
   for (int finger = 0; finger < kFingers; ++finger) {
-    Vector3 moved = Vector3::Zero();  // of the next joint from where it is tracked
+    Vector3 moved = Vector3::Zero();  // displacement of the next joint from its tracked position
     for (int bone = 1; bone < kBonesPerFinger; ++bone) {
       const auto c = static_cast<std::size_t>(capsule_index(finger, bone));
       Capsule& capsule = hand.capsules[c];

@@ -23,8 +23,8 @@ Quaternion mean_orientation(const SampleHistory& history, int count) {
   return mean.normalized();
 }
 
-/// From the newest back to the first sample that lacks it: a bone that has been away is not drawn towards
-/// where it was before.
+/// Mean of a capsule from the newest sample back to the first that lacks it: a bone that was missing is not
+/// averaged with its earlier positions.
 Capsule mean_capsule(const SampleHistory& history, int count, std::size_t capsule) {
   Capsule sum;
   int present = 0;
@@ -46,7 +46,7 @@ int samples_in_sum(const FilterConfiguration& filter) {
 }
 
 /// As printed, Eq. 1 adds F + 1 samples and divides by F: at F = 3 the hand is 4/3 as far from the origin as
-/// it is. Widths are means all the same, and before F + 1 samples are there the factor is that of F + 1.
+/// it should be. Widths are true means. With fewer than F + 1 samples the factor is that of F + 1.
 Hand window_mean(double, const FilterConfiguration& filter, FilterMemory& memory) {
   const SampleHistory& history = memory.history;
   const int count = std::min(samples_in_sum(filter), history.size);

@@ -41,7 +41,7 @@ void check_goals(const TaskObject& object, const std::vector<Goal>& goals, const
   }
 }
 
-/// All links of a URDF, which hang on one.
+/// All links of a URDF, which must be one linkage.
 void make_device(const TaskObject& object, const std::string& urdf, const SceneOptions& options,
                  ObjectModel& model) {
   if (object.twist.linear != Vector3::Zero() || object.twist.angular != Vector3::Zero())
@@ -72,14 +72,14 @@ void make_body(const TaskObject& object, const std::string& urdf, const Scene& s
   model.request.twist = object.twist;
 }
 
-constexpr double kReach = 0.35;      // of the arm, each way from where the object starts [m]
+constexpr double kReach = 0.35;      // of the arm, in each direction from the object's start [m]
 constexpr double kFallen = 0.05;     // below the stand [m]
 constexpr double kHalfStand = 0.02;  // [m]
-constexpr double kSlap = 1.0;        // a blow may be as fast as that, a tap not [m/s]
-constexpr double kAjar = 0.1;        // [rad]
-constexpr double kFlight = 3.5;      // that what flies past may be followed for [s]
+constexpr double kSlap = 1.0;    // a goal whose maximum speed is at least this is a slap, else a tap [m/s]
+constexpr double kAjar = 0.1;    // [rad]
+constexpr double kFlight = 3.5;  // longest time for which a passing object is followed [s]
 
-/// From the centre of mass down to the lowest point of the body as it starts [m].
+/// Height of the centre of mass above the body's lowest point at the start [m].
 double half_height(const Body& body) {
   const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
   if (body.shapes.size() == 1 && box != nullptr) return box->half_extents.z();
@@ -96,7 +96,7 @@ bool is_place(const Goal& goal) {
   return goal.kind == GoalKind::place || goal.kind == GoalKind::insert;
 }
 
-/// The practised motion of a goal. Nothing for a release, which is part of the motion that took the object.
+/// The practised motion for a goal. Empty for a release, which is part of the motion that grasped the object.
 std::optional<PractisedGoal> practised(const Goal& goal) {
   switch (goal.kind) {
     case GoalKind::catch_it:
@@ -127,7 +127,8 @@ bool is_rest(const Goal& goal) {
   return goal.kind == GoalKind::rest;
 }
 
-/// What a person who floats does for the task's goal: `pick` begins what brings the object to its rest.
+/// A floating person's action for a goal of the task. `pick` starts the transport of the object to the place
+/// of the next goal `rest`.
 FloatingGoal floating(const Task& task, std::size_t index) {
   const Goal& goal = task.goals[index];
   if (goal.kind == GoalKind::joint) {
@@ -156,7 +157,7 @@ ObjectModel load_object(const TaskObject& object, const std::vector<Goal>& goals
   const std::string urdf = find_scene_file(object.file, scene_folders);
   const Scene scene = load_scene(urdf, options);
   ObjectModel model;
-  model.request.urdf = std::filesystem::absolute(urdf).string();  // whose folder meshes are relative to
+  model.request.urdf = std::filesystem::absolute(urdf).string();  // its folder is the base of mesh paths
   if (scene.joints.empty()) {
     make_body(object, urdf, scene, model);
   } else {
@@ -255,7 +256,7 @@ Scene operator_scene(const Task& task, const TaskObject& object, const OperatorS
 }
 
 Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twist& twist, bool held) {
-  constexpr double kOutside = 0.05;  // of a hole's rim, beyond where the object is to be [m]
+  constexpr double kOutside = 0.05;  // distance of the hole's rim from the goal's position [m]
   Sight sight;
   sight.object = object;
   sight.twist = twist;

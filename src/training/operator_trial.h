@@ -17,23 +17,23 @@ namespace mrhi {
 
 /// An object as a trial uses it.
 struct ObjectModel {
-  ObjectRequest request;  ///< that puts it where it starts; `whole` for a device
-  Scene scene;            ///< of it alone, there
-  std::size_t body = 0;   ///< in it: of the object's name
+  ObjectRequest request;  ///< to spawn it at its start; `whole` for a device
+  Scene scene;            ///< of this object alone, at its start
+  std::size_t body = 0;   ///< index in `scene` of the body with the object's name
 
   bool is_device() const { return request.whole; }
 };
 
-/// Throws SceneError for a file that cannot be read, that has other links than an object's, or lacks a joint
-/// that the task's goals ask for.
+/// Loads an object of a task. Throws SceneError for a file that cannot be read, has other links than the
+/// object's, or lacks a joint that a goal needs.
 ObjectModel load_object(const TaskObject& object, const std::vector<Goal>& goals,
                         const std::vector<std::string>& scene_folders, const SceneOptions& options);
-/// The same for what is there in all trials, which is one body.
+/// Loads a fixture of a task, which is one body, likewise.
 ObjectModel load_fixture(const Fixture& fixture, const std::vector<std::string>& scene_folders,
                          const SceneOptions& options);
 
 /// The fixtures and operators of the task's scene, without its free bodies; empty if the task names no scene.
-/// Throws SceneError for a file that cannot be read, or without the operator that a goal asks for.
+/// Throws SceneError for a file that cannot be read, or lacks the operator that a goal needs.
 Scene load_surroundings(const Task& task, const std::vector<std::string>& scene_folders,
                         const SceneOptions& options);
 
@@ -46,9 +46,9 @@ struct OperatorStage {
   double noise = 1.0;         ///< amplitude of TrackingNoise
 };
 
-/// The scene of a task's trial with one object. With gravity the object stands on a table (a flat body on two
-/// rails, so that it can be taken from below), and what falls off is put back at once, as is what leaves the
-/// reach of the arm. Throws SceneError.
+/// The scene of a trial with one object. With gravity the object stands on a table (a flat body on two rails,
+/// so that a hand can grasp it from below). An object that falls off, or leaves the reach of the arm, returns
+/// to its start. Throws SceneError.
 Scene operator_scene(const Task& task, const TaskObject& object, const OperatorStage& stage);
 
 /// Sight of an object and of the task's goals from `goal` on. The place of a goal `insert` is first outside
@@ -61,10 +61,10 @@ Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twi
 std::unique_ptr<Person> make_person(const OperatorSkill& skill, const Task& task, const Body& object,
                                     std::uint64_t seed, const Scene& surroundings = {});
 
-/// Moves the person's hands to `time` [s], and gives them as a device at that pose sees them.
+/// Moves the person's hands to `time` [s], and returns them as a device at that pose sees them.
 std::vector<HandJoints> hands_of(Person& person, double time, const Sight& sight, const Pose& device);
 
-/// Throws as make_person() does for the first object of the task that a simulated operator cannot do it with.
+/// Throws as make_person() does for the first object with which a simulated operator cannot do the task.
 void check_operator(const Task& task, const OperatorStage& stage);
 
 /// A simulated operator does the session's next trial: it sees the object, and through the noisy tracker its

@@ -5,6 +5,9 @@
 
 namespace mrhi {
 
+constexpr double kRounding = 1e-12;  // of lengths of some centimetres, over some dozens of operations [m]
+const Shape kCan = Cylinder{0.02, 0.03};
+
 inline Quaternion turn(double angle, const Vector3& axis) {
   return Quaternion(Eigen::AngleAxisd(angle, axis.normalized()));
 }

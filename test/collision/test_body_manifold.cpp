@@ -11,9 +11,7 @@
 namespace mrhi {
 namespace {
 
-constexpr double kRounding = 1e-12;  // of lengths of some centimetres, over some dozens of operations [m]
 const Shape kCube = Box{{0.025, 0.025, 0.025}};
-const Shape kCan = Cylinder{0.02, 0.03};
 
 std::set<int> features(const Manifold& manifold) {
   std::set<int> names;

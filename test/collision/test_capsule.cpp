@@ -7,7 +7,6 @@
 namespace mrhi {
 namespace {
 
-constexpr double kRounding = 1e-12;
 const Pill kPill{0.02, 0.03};
 
 Quaternion lying() {

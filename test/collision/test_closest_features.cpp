@@ -2,12 +2,11 @@
 
 #include "brute_force.h"
 #include "collision/closest_features.h"
-#include "random_capsules.h"
+#include "placed_shapes.h"
 
 namespace mrhi {
 namespace {
 
-constexpr double kRounding = 1e-12;   // of lengths of some centimetres [m]
 constexpr double kAnyDistance = 1.0;  // [m]
 const Sphere kSphere{0.03};
 const Box kBox{{0.03, 0.02, 0.01}};

@@ -5,9 +5,7 @@
 namespace mrhi {
 namespace {
 
-constexpr double kRounding = 1e-12;  // of lengths of some centimetres, over some dozens of operations [m]
 constexpr double kRight = 1.5707963267948966;
-const Shape kCan = Cylinder{0.02, 0.03};
 
 const ManifoldPoint& point(const Manifold& manifold, int i) {
   return manifold.points[std::size_t(i)];

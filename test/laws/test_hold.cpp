@@ -16,8 +16,8 @@ using testing::play;
 using testing::scene_of;
 using testing::unfiltered;
 
-constexpr double kRadius = 0.008;
-constexpr double kHalf = 0.025;
+constexpr double kTipRadius = 0.008;
+constexpr double kHalfEdge = 0.025;
 constexpr double kOverlap = 0.004;
 
 /// Minimum-jerk way from 0 to 1 within `duration` [s] (Flash & Hogan 1985).
@@ -32,15 +32,15 @@ std::function<Hand(double)> pinch(const Vector3& way, double open) {
   return [=](double t) {
     const double gap = 0.01 - (0.01 + kOverlap) * smooth(t, 0.3) + 0.03 * smooth(t - open, 0.1);
     const Vector3 shift = smooth(t - 0.5, 1.0) * way;
-    const Vector3 x((kHalf + kRadius + gap), 0, 0), y(0, 0.0125, 0);
-    Hand hand = finger(shift + x - y, shift + x + y, kRadius);
-    testing::add_finger(hand, capsule_index(0, 3), shift - x - y, shift - x + y, kRadius);
+    const Vector3 x((kHalfEdge + kTipRadius + gap), 0, 0), y(0, 0.0125, 0);
+    Hand hand = finger(shift + x - y, shift + x + y, kTipRadius);
+    testing::add_finger(hand, capsule_index(0, 3), shift - x - y, shift - x + y, kTipRadius);
     return hand;
   };
 }
 
 Body cube() {
-  return box_body(Vector3::Constant(2.0 * kHalf), 0.1);
+  return box_body(Vector3::Constant(2.0 * kHalfEdge), 0.1);
 }
 
 double energy(const Simulation& simulation) {
@@ -114,9 +114,9 @@ TEST(Hold, rendered_fingertips_stay_outside_however_deep_the_tracked_ones_are) {
 TEST(Energy, a_still_hand_beside_or_on_a_resting_object_moves_nothing) {
   for (const double gap : {0.01, 1e-6}) {
     Simulation simulation(scene_of(cube()), unfiltered());
-    const double x = kHalf + kRadius + gap;
+    const double x = kHalfEdge + kTipRadius + gap;
     play(simulation, 0.0, 1.0, 120.0,
-         [x](double) { return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kRadius); });
+         [x](double) { return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kTipRadius); });
     EXPECT_EQ(energy(simulation), 0.0) << gap;
     EXPECT_EQ(simulation.state().bodies[0].pose.position, Vector3::Zero());
   }
@@ -132,7 +132,7 @@ TEST(Energy, a_ball_that_bounces_off_a_still_finger_never_gains) {
     double last = energy(simulation);
     play(
         simulation, 0.0, 0.3, 1000.0,
-        [](double) { return finger(Vector3(0, -0.02, 0), Vector3(0, 0.02, 0), kRadius); },
+        [](double) { return finger(Vector3(0, -0.02, 0), Vector3(0, 0.02, 0), kTipRadius); },
         [&](const Simulation& s) {
           EXPECT_LE(energy(s), last * (1.0 + 1e-12));
           last = energy(s);
@@ -145,14 +145,14 @@ TEST(Appearing, a_hand_that_appears_inside_an_object_does_not_push_it_until_it_h
   Simulation simulation(scene_of(cube()), unfiltered());
   const auto inside = [](double t) {
     const double x = t < 0.5 ? 0.02 : 0.02 + 0.2 * (t - 0.5);
-    return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kRadius);
+    return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kTipRadius);
   };
   play(simulation, 0.0, 1.0, 120.0, inside);
   EXPECT_EQ(energy(simulation), 0.0);
   // Out now; when it comes back it touches.
   play(simulation, 1.0 + 1.0 / 120, 1.5, 120.0, [](double t) {
     const double x = 0.12 - 0.3 * (t - 1.0);
-    return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kRadius);
+    return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kTipRadius);
   });
   EXPECT_LT(object_twist(simulation).linear.x(), -0.1);
 }
@@ -161,7 +161,7 @@ TEST(Appearing, a_hand_that_jumps_onto_an_object_leaves_it_in_peace) {
   Simulation simulation(scene_of(cube()), unfiltered());
   play(simulation, 0.0, 0.5, 120.0, [](double t) {
     const double x = t < 0.2 ? 0.33 : 0.03;
-    return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kRadius);
+    return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kTipRadius);
   });
   EXPECT_LE(object_twist(simulation).linear.norm(), 1e-12);
 }
@@ -171,8 +171,8 @@ TEST(Appearing, a_hand_that_appears_beside_an_object_pushes_it) {
   constexpr double kGap = 0.0001, kSpeed = 0.2;
   Simulation simulation(scene_of(cube()), unfiltered());
   play(simulation, 0.0, 0.2, 120.0, [](double t) {
-    const double x = kHalf + kRadius + kGap - kSpeed * t;
-    return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kRadius);
+    const double x = kHalfEdge + kTipRadius + kGap - kSpeed * t;
+    return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kTipRadius);
   });
   EXPECT_LT(simulation.state().bodies[0].pose.position.x(), -0.5 * kSpeed * 0.2);
 }

@@ -10,7 +10,7 @@ using testing::closing_gap;
 using testing::kDegrees;
 using testing::smooth;
 
-constexpr double kRate = 120.0;  // [1/s]
+constexpr double kTrackerRate = 120.0;  // [1/s]
 
 Configuration under_gravity(double gravity) {
   Configuration configuration = testing::implicit_configuration();
@@ -41,7 +41,7 @@ class Carried {
   void play(double held, double until, const std::function<Pose(double)>& way,
             const std::function<std::vector<Hand>(double)>& hands_at) {
     double t = 0.0;
-    for (int frame = 0; (t = frame / kRate) < until; ++frame) {
+    for (int frame = 0; (t = frame / kTrackerRate) < until; ++frame) {
       simulation_.advance({at(t), hands_at(t)});
       if (t < held) {
         SimulationState state = simulation_.state();

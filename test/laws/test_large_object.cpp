@@ -9,19 +9,19 @@ namespace {
 
 using namespace testing;
 
-constexpr double kRadius = 0.008, kHalfRail = 0.01, kOverlap = 0.002;  // [m]
+constexpr double kFingerRadius = 0.008, kHalfRail = 0.01, kGripOverlap = 0.002;  // [m]
 const Vector3 kCentre(0.0, 0.25, 0.3);
 
 /// Fingertips along a rail on its two sides, where the crate is when it has come as far as `by`.
 Hand on_rail(std::uint32_t id, double x, const Vector3& by, double closed) {
   const Vector3 place = kCentre + Vector3(x, 0, 0) + by, along(0, 0, 0.015);
-  const double off = kHalfRail + kRadius + (1.0 - closed) * 0.01 - closed * kOverlap;
+  const double off = kHalfRail + kFingerRadius + (1.0 - closed) * 0.01 - closed * kGripOverlap;
   Hand hand;
   hand.id = id;
   hand.side = id == 1 ? Side::left : Side::right;
   for (const int side : {1, -1}) {
     const Vector3 tip = place + Vector3(0, side * off, 0);
-    add_finger(hand, capsule_index(side > 0 ? 1 : 0, 3), tip - along, tip + along, kRadius);
+    add_finger(hand, capsule_index(side > 0 ? 1 : 0, 3), tip - along, tip + along, kFingerRadius);
   }
   hand.palm = {place, Quaternion::Identity()};
   return hand;

@@ -10,9 +10,9 @@
 namespace mrhi {
 namespace {
 
-constexpr double kHalf = 0.025, kRadius = 0.008;   // of the cube, of the fingers [m]
-constexpr double kDepth = 0.002, kRate = 1000.0;   // of the centroids, a step a frame
-constexpr double kMass = 0.1, kStiffness = 100.0;  // [kg], [N/m]
+constexpr double kHalf = 0.025, kRadius = 0.008;              // of the cube, of the fingers [m]
+constexpr double kDepth = 0.002, kRate = 1000.0;              // of the centroids, a step a frame
+constexpr double kCubeMass = 0.1, kContactStiffness = 100.0;  // [kg], [N/m]
 
 Configuration literal(bool on) {
   Configuration configuration = testing::unfiltered(ContactModelKind::seed);
@@ -23,9 +23,9 @@ Configuration literal(bool on) {
 
 /// So heavy to turn that it does not.
 Body cube() {
-  Body body = testing::box_body(Vector3::Constant(2.0 * kHalf), kMass);
+  Body body = testing::box_body(Vector3::Constant(2.0 * kHalf), kCubeMass);
   body.inertia *= 1e9;
-  body.material.stiffness = kStiffness;
+  body.material.stiffness = kContactStiffness;
   return body;
 }
 
@@ -63,13 +63,13 @@ struct Printed {
       const double side = finger == 1 ? 1.0 : -1.0;
       const Capsule& bone = hand.capsules[static_cast<std::size_t>(capsule_index(finger, 3))];
       const Vector3 p = 0.5 * (bone.start + bone.end);
-      const double normal = kStiffness * (z + side * kHalf - p.z()) * side;
-      double along = kStiffness * (x + god[static_cast<std::size_t>(finger)] - p.x());
+      const double normal = kContactStiffness * (z + side * kHalf - p.z()) * side;
+      double along = kContactStiffness * (x + god[static_cast<std::size_t>(finger)] - p.x());
       if (normal <= 0.0) continue;
       if (std::abs(along) > material.static_friction * normal) along *= material.dynamic_friction;
       fx -= along, fz -= side * normal;
     }
-    vx += h * fx / kMass, vz += h * fz / kMass;
+    vx += h * fx / kCubeMass, vz += h * fz / kCubeMass;
     x += h * vx, z += h * vz;
   }
 };
@@ -81,8 +81,8 @@ TEST(SeedLiteral, computes_the_penetration_phase_as_printed) {
   const BodyState start = simulation.state().bodies[0];
   Printed printed{start.pose.position.x(),
                   start.pose.position.z(),
-                  start.linear_momentum.x() / kMass,
-                  start.linear_momentum.z() / kMass,
+                  start.linear_momentum.x() / kCubeMass,
+                  start.linear_momentum.z() / kCubeMass,
                   {}};
   ASSERT_EQ(simulation.result().contacts.size(), 2u);
   for (const Contact& contact : simulation.result().contacts)
@@ -133,9 +133,9 @@ TEST(SeedLiteral, puts_the_hand_by_eq_1_as_printed) {
 // Eqs. 9 to 15: j = (1 + e) m v with K = 1/m, and no spin, wherever it strikes.
 TEST(SeedLiteral, strikes_without_a_spin) {
   Configuration configuration = literal(true);
-  Body body = testing::box_body(Vector3::Constant(2.0 * kHalf), kMass);
+  Body body = testing::box_body(Vector3::Constant(2.0 * kHalf), kCubeMass);
   body.material.restitution = 0.5;
-  body.material.stiffness = kStiffness;
+  body.material.stiffness = kContactStiffness;
   Simulation simulation(testing::scene_of(body), configuration);
   constexpr double kSpeed = 0.5;
   testing::play(simulation, 0.0, 0.12, kRate, [](double t) {

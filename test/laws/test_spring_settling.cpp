@@ -11,9 +11,9 @@
 namespace mrhi {
 namespace {
 
-constexpr double kDepth = 0.002;       // [m]
-constexpr double kStiffness = 2000.0;  // [N/m]
-constexpr double kStep = 0.001;        // [s]
+constexpr double kDepth = 0.002;          // [m]
+constexpr double kSpringStiffness = 2000.0;  // [N/m]
+constexpr double kStep = 0.001;           // [s]
 constexpr double kStatic = 0.8, kDynamic = 0.6;
 
 /// A fingertip on a body that does not move, drawn along x by `stretch` from where it stuck.
@@ -21,7 +21,7 @@ class Touch {
  public:
   explicit Touch(double stretch, Friction before = Friction::sticking) {
     Body body = testing::box_body(Vector3::Constant(0.05), 0.1);
-    body.material.stiffness = kStiffness;
+    body.material.stiffness = kSpringStiffness;
     body.material.static_friction = kStatic, body.material.dynamic_friction = kDynamic;
     scene_ = testing::scene_of(body);
     complete(scene_.bodies[0]);
@@ -94,7 +94,7 @@ TEST(Settling, a_patch_bears_two_thirds_of_its_radius) {
   Touch touch(0.0);
   touch.contact.twist = 3.0;
   touch.settle_implicit();
-  EXPECT_NEAR(touch.spring.response.torque, 2.0 / 3.0 * kStatic * kStiffness * kDepth * 0.004, 1e-12);
+  EXPECT_NEAR(touch.spring.response.torque, 2.0 / 3.0 * kStatic * kSpringStiffness * kDepth * 0.004, 1e-12);
 }
 
 }  // namespace

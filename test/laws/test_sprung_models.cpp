@@ -13,7 +13,7 @@ using testing::PinchedCube;
 using testing::smooth;
 using testing::total_force;
 
-constexpr double kRadius = 0.008;  // of a fingertip [m]
+constexpr double kTipRadius = 0.008;  // of a fingertip [m]
 
 /// What holds of the models that couple the hand by springs and dampers.
 class SprungModel : public ::testing::TestWithParam<ContactModelKind> {};
@@ -89,7 +89,7 @@ TEST_P(SprungModel, a_ball_that_bounces_off_a_still_finger_never_gains) {
   };
   const double first = energy();
   testing::play(
-      simulation, 0.0, 0.6, 1000.0, [](double) { return lying(0, -2.0 * kRadius); },
+      simulation, 0.0, 0.6, 1000.0, [](double) { return lying(0, -2.0 * kTipRadius); },
       [&](const Simulation&) { EXPECT_LE(energy(), first * (1.0 + 1e-12)); });
   EXPECT_GT(object_twist(simulation).linear.z(), 0.05);
   EXPECT_LT(energy(), 0.9 * first);

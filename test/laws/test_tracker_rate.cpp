@@ -87,6 +87,8 @@ TEST_P(AtATrackersRate, a_shaken_cube_slips_no_sooner_than_in_a_hand_sampled_at_
   const double reference = largest_without_slip(configuration, 1000.0);
   for (const double rate : {60.0, 90.0, 120.0, 240.0})
     EXPECT_GE(largest_without_slip(configuration, rate), 0.9 * reference) << rate << " Hz";
+  // Measured: 0.60 and 0.65; ten frames a period do not tell the acceleration within one better.
+  EXPECT_GE(largest_without_slip(configuration, 30.0), 0.55 * reference) << "30 Hz";
   for (const double step : {0.00025, 0.004, 0.00834}) {
     configuration.step = step;
     EXPECT_GE(largest_without_slip(configuration, 120.0), 0.9 * reference) << step << " s";
@@ -131,7 +133,7 @@ TEST(TrackerRate, the_forces_of_a_frame_are_the_momentum_given_in_it_over_its_ti
 /// As it ships, but for the grasp assist, which would hide a slip.
 TEST(TrackerRate, a_cube_shaken_by_5_cm_stays_in_the_shipped_hand) {
   const FilterKind shipped = FilterConfiguration().type;
-  for (const double rate : {60.0, 90.0, 120.0, 240.0})
+  for (const double rate : {30.0, 45.0, 60.0, 90.0, 120.0, 240.0})
     EXPECT_LE(shake(configuration_of(HandStrength::of_a_person(), shipped), rate, 0.05).true_slip, 5e-6)
         << rate << " Hz";
 }

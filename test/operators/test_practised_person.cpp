@@ -4,7 +4,7 @@
 namespace mrhi {
 namespace {
 
-constexpr double kFrame = 1.0 / 115.0;
+constexpr double kPeriod = 1.0 / 115.0;
 
 struct Done {
   double seconds;
@@ -19,11 +19,11 @@ Done done(Skilled skill) {
   Vector3 before = person.move(0.0, sight).wrist.position;
   Done result{0.0, before};
   double still = 0.0;
-  for (double time = kFrame; still < 4.0; time += kFrame) {
+  for (double time = kPeriod; still < 4.0; time += kPeriod) {
     const Vector3 wrist = person.move(time, sight).wrist.position;
     const bool moves = (wrist - before).norm() > 1e-9;
     if (moves) sight.goal = 1, result.seconds = time, still = 0.0;
-    if (!moves) still += kFrame;
+    if (!moves) still += kPeriod;
     result.end = before = wrist;
     EXPECT_LT(time, 60.0);
     if (time >= 60.0) break;

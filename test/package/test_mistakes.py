@@ -28,7 +28,8 @@ class MistakesTest(unittest.TestCase):
                 ("screenshot", ("--motion", "jump"), "jump", "grasp_cube"),
                 ("screenshot", ("--moment", "now"), "now", "done"),
                 ("screenshot", ("--scene", "table"), "table", "cube_on_table"),
-                ("screenshot", ("--bag", "no_such.bag"), "no_such.bag", "")):
+                ("screenshot", ("--bag", "no_such.bag"), "no_such.bag", ""),
+                ("test", ("laws", "physics"), "physics", "test/ros/NAME.test")):
             with self.subTest(script=script, arguments=arguments):
                 status, line, told = last_line_of(script, *arguments)
                 self.assertEqual(status, 2, told)

@@ -86,8 +86,10 @@ class SystemsTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:  # without what has been built
             package = os.path.join(folder, "mr_hand_interaction")
             shutil.copytree(PACKAGE, package, ignore=lambda _, names: {"build", "devel", "out", ".git"} & set(names))
-            done = subprocess.run(["catkin_lint", "-W1", package], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+            done = subprocess.run(["catkin_lint", "-W1", package], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                   universal_newlines=True)
+        self.assertNotIn("cannot lint", done.stdout)
+        self.assertIn("checked 1 packages", done.stdout)
         faults = [line for line in done.stdout.splitlines() if ": error: " in line]
         self.assertEqual([line for line in faults if not any(known in line for known in NO_FAULTS)], [])
 
@@ -103,6 +105,12 @@ class SystemsTest(unittest.TestCase):
                 usage = subprocess.run([os.path.join(PACKAGE, words[0]), "--help"], stdout=subprocess.PIPE, universal_newlines=True)
                 self.assertIn(option, usage.stdout)
         self.assertEqual({"build", "devel"} - set(text_of(".dockerignore").split()), set())
+
+    @unittest.skipUnless(os.path.exists(os.path.join(PACKAGE, "devel", "setup.bash")), "not built with catkin")
+    def test_the_container_s_entry_point_leaves_options_to_the_command(self):
+        done = subprocess.run(["bash", os.path.join(PACKAGE, "scripts/in_container"), "printf", "%s,", "--help", "--local"],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        self.assertEqual((done.returncode, done.stdout), (0, "--help,--local,"))
 
     def test_all_files_tell_one_version(self):
         version = xml.etree.ElementTree.parse(os.path.join(PACKAGE, "package.xml")).getroot().findtext("version")

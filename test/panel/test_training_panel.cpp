@@ -23,7 +23,7 @@ using Status = mr_hand_interaction::TrainingStatus;
 constexpr double kLimit = 60.0;  // far beyond what an answer takes [s]
 
 /// Plays training_node, and drives the panel as rviz does: callbacks and events in one thread.
-class PanelTest : public testing::Test {
+class PanelTest : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto offer = [this](const std::string& name) {
@@ -157,7 +157,7 @@ TEST_F(PanelTest, pause_goes_on_where_it_is_paused) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
+  ::testing::InitGoogleTest(&argc, argv);
   ros::init(argc, argv, "test_training_panel");
   QApplication application(argc, argv);
   const ros::NodeHandle node;

@@ -97,7 +97,7 @@ std::vector<JointsFrame> used_frames(const HeldObject& held, const std::string& 
   return frames;
 }
 
-struct Outcome {
+struct HeldOutcome {
   int grasps = 0;
   double begins = 0.0, ends = 0.0;  // of the grasp [s]
   double object_moved = 0.0;        // in the grip, at most, from settled until it opens [m]
@@ -108,7 +108,7 @@ struct Outcome {
 };
 
 /// Fingers that open may close on what drifts among them once more: grasps are counted until then.
-void note_events(const FrameResult& result, double time, double opens, Outcome& outcome) {
+void note_events(const FrameResult& result, double time, double opens, HeldOutcome& outcome) {
   for (const Event& event : result.events) {
     if (event.kind == EventKind::grasp_begin && time < opens && ++outcome.grasps == 1) outcome.begins = time;
     if (event.kind == EventKind::grasp_end) outcome.ends = time;
@@ -116,10 +116,10 @@ void note_events(const FrameResult& result, double time, double opens, Outcome& 
 }
 
 /// Gravity sets in when the fingers have closed: nothing supports the object before.
-Outcome hold(const HeldObject& held, const std::string& file, double gravity) {
+HeldOutcome hold(const HeldObject& held, const std::string& file, double gravity) {
   Simulation weightless = prepare_simulation(arguments_of(held, 0.0));
   Simulation heavy = prepare_simulation(arguments_of(held, gravity));
-  Outcome outcome;
+  HeldOutcome outcome;
   std::optional<testing::Grip> grip;
   Hand before;
   double time_before = 0.0;
@@ -170,7 +170,7 @@ class HeldRecording : public ::testing::TestWithParam<HeldObject> {
 /// with them and moves no farther than they do, and two fifths more: grasp assist carries it with the distal
 /// phalanges alone, while their movement is that of all that pressed. Measured: 10.7 mm where they move by
 /// 8.0, in lm_hmd_pinch at 1 g, all of it as that hand half opens at 7.2 s; 8.1 mm or less in the others.
-void expect_held(const HeldObject& held, const Outcome& outcome) {
+void expect_held(const HeldObject& held, const HeldOutcome& outcome) {
   EXPECT_EQ(outcome.grasps, 1);
   EXPECT_LT(outcome.begins, held.settled);
   EXPECT_GT(outcome.ends, held.opens);
@@ -179,7 +179,7 @@ void expect_held(const HeldObject& held, const Outcome& outcome) {
 }
 
 TEST_P(HeldRecording, holds_the_object_from_closing_to_opening_and_lets_it_go_gently) {
-  const Outcome outcome = hold(GetParam(), file(), 0.0);
+  const HeldOutcome outcome = hold(GetParam(), file(), 0.0);
   expect_held(GetParam(), outcome);
   // Fingers that open one after the other take it along a little: measured 0.1 to 0.5 of the fastest.
   EXPECT_LT(outcome.twist.linear.norm(), 0.6 * outcome.fastest_opening);
@@ -201,7 +201,7 @@ Vector3 last_position(const std::string& objects_csv) {
 // in writing the part that is used.
 TEST_P(HeldRecording, gives_the_same_through_replay) {
   const HeldObject& held = GetParam();
-  const Outcome outcome = hold(held, file(), 0.0);
+  const HeldOutcome outcome = hold(held, file(), 0.0);
   const test::TemporaryFolder folder;
   ReplayArguments arguments = arguments_of(held, 0.0);
   arguments.input = test::write_recording(folder / "used.csv", used_frames(held, file()));

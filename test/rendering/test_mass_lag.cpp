@@ -12,7 +12,7 @@ namespace {
 
 using namespace testing;
 
-constexpr double kRatio = 1.5, kFrame = 1.0 / 120.0;
+constexpr double kRatio = 1.5, kPeriod = 1.0 / 120.0;
 /// By so much the renderer keeps the pads of this pinch outside of the cube, without a lag [m].
 constexpr double kKeptOut = 2e-4;
 
@@ -29,7 +29,7 @@ class Carried {
   }
   template <class Path>
   void run(double until, const Path& path) {
-    for (; time_ < until; time_ += kFrame) {
+    for (; time_ < until; time_ += kPeriod) {
       const Hand hand = pinch_.hand(time_, Vector3(0, path(time_), 0));
       ASSERT_EQ(simulation_->advance({at(time_), {hand}}), Rejection::none);
       largest_ = std::max(largest_, lag().norm());
@@ -109,9 +109,9 @@ TEST(MassLag, control_to_display_ratio_of_a_hand_that_sets_off_is_at_most_the_ma
     for (const double duration : {0.05, 0.2, 1.0, 5.0}) {
       MassLag lag;
       const auto path = [&](double t) { return 0.1 * smooth(t, duration); };
-      for (double t = 0.0; t < 2.0 * duration; t += kFrame) {
+      for (double t = 0.0; t < 2.0 * duration; t += kPeriod) {
         // Mean acceleration of the frame, by the displacements of the frames around it.
-        const double a = (path(t) - 2.0 * path(t - kFrame) + path(t - 2.0 * kFrame)) / (kFrame * kFrame);
+        const double a = (path(t) - 2.0 * path(t - kPeriod) + path(t - 2.0 * kPeriod)) / (kPeriod * kPeriod);
         advance_mass_lag(kRatio, {mass, Vector3(a, 0, 0)}, at(t), lag);
         const double shown = path(t) + lag.displacement.x();
         if (path(t) > 0.005) worst = std::max(worst, path(t) / shown);
@@ -127,8 +127,8 @@ TEST(MassLag, is_never_longer_than_its_limit_and_zero_without_acceleration) {
   double longest = 0.0;
   for (int i = 0; i < 2000; ++i) {
     const Vector3 wild(900.0 * std::sin(0.1 * i), 700.0 * std::cos(0.023 * i), i % 7 == 0 ? 500.0 : -80.0);
-    advance_mass_lag(2.0, {50.0, wild}, at(i * kFrame), lag);
-    advance_mass_lag(2.0, {50.0, Vector3::Zero()}, at(i * kFrame), none);
+    advance_mass_lag(2.0, {50.0, wild}, at(i * kPeriod), lag);
+    advance_mass_lag(2.0, {50.0, Vector3::Zero()}, at(i * kPeriod), none);
     longest = std::max(longest, lag.displacement.norm());
     ASSERT_TRUE(none.zero());
   }

@@ -262,7 +262,7 @@ class CommandsTest(Folders):
                       'told', cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn('hand_opened: object', done.stdout)
-        self.assertTrue(done.stdout.endswith('1 lost or let go; told/explain.html\n'), done.stdout)
+        self.assertTrue(done.stdout.endswith('1 lost or released; told/explain.html\n'), done.stdout)
         self.assertTrue(os.path.isfile(os.path.join(self.folder, 'told', 'explain.json')))
 
     def test_replay_calls_the_scripts(self):

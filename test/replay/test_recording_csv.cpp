@@ -13,10 +13,10 @@
 namespace mrhi {
 namespace {
 
-class CsvFile {
+class RecordingFile {
  public:
-  explicit CsvFile(const std::string& text) { std::ofstream(path_) << text; }
-  ~CsvFile() { std::remove(path_.c_str()); }
+  explicit RecordingFile(const std::string& text) { std::ofstream(path_) << text; }
+  ~RecordingFile() { std::remove(path_.c_str()); }
   const std::string& path() const { return path_; }
 
  private:
@@ -25,7 +25,7 @@ class CsvFile {
 };
 
 std::string error_of(const std::string& text) {
-  const CsvFile file(text);
+  const RecordingFile file(text);
   try {
     read_recording_csv(file.path());
   } catch (const RecordingError& error) {
@@ -38,7 +38,7 @@ const char* const kHeader =
     "is_left,time_s,frame_id,hand_id,wrist_x,wrist_y,wrist_z,index_width,index_j1_x,index_j1_y,index_j1_z\n";
 
 TEST(RecordingCsv, ColumnsAreFoundByNameAndEmptyCellsAreAbsent) {
-  const CsvFile file(std::string(kHeader) + "1,0.016001,5,12,,,,0.018,0.1,-0.2,3e-1\r\n");
+  const RecordingFile file(std::string(kHeader) + "1,0.016001,5,12,,,,0.018,0.1,-0.2,3e-1\r\n");
   const auto frames = read_recording_csv(file.path());
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_EQ(frames[0].stamp, 16001000);
@@ -63,7 +63,7 @@ TEST(RecordingCsv, AsASpreadsheetSavesItIsTheSame) {
   const std::string mark = "\xEF\xBB\xBF";
   for (const std::string& text :
        {mark + plain, with(';', ','), mark + with(';', ','), with(';', '.'), with('\t', ',')}) {
-    const CsvFile file(text);
+    const RecordingFile file(text);
     const auto frames = read_recording_csv(file.path());
     ASSERT_EQ(frames.size(), 1u) << text;
     EXPECT_EQ(frames[0].stamp, 16001000);
@@ -73,8 +73,8 @@ TEST(RecordingCsv, AsASpreadsheetSavesItIsTheSame) {
 }
 
 TEST(RecordingCsv, RowsOfOneTimeAndFrameAreOneFrameAndMinusOneIsNoHand) {
-  const CsvFile file(std::string(kHeader) +
-                     "0,0,1,4,,,,,,,\n1,0,1,5,,,,,,,\n,0.01,2,-1,,,,,,,\n0,0.01,3,4,,,,,,,\n");
+  const RecordingFile file(std::string(kHeader) +
+                           "0,0,1,4,,,,,,,\n1,0,1,5,,,,,,,\n,0.01,2,-1,,,,,,,\n0,0.01,3,4,,,,,,,\n");
   const auto frames = read_recording_csv(file.path());
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_EQ(frames[0].hands.size(), 2u);
@@ -108,7 +108,7 @@ TEST(RecordingCsv, NumbersAreReadAlikeInEveryLocale) {
   for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "nl_NL.UTF-8"})
     if (!comma_locale) comma_locale = setlocale(LC_NUMERIC, name);
   if (!comma_locale) GTEST_SKIP() << "no locale with a decimal comma is installed";
-  const CsvFile file(std::string(kHeader) + "0,0.5,1,4,,,,,,,\n");
+  const RecordingFile file(std::string(kHeader) + "0,0.5,1,4,,,,,,,\n");
   EXPECT_EQ(read_recording_csv(file.path())[0].stamp, 500000000);
   setlocale(LC_NUMERIC, "C");
 }

@@ -10,13 +10,14 @@
 namespace mrhi {
 namespace {
 
-constexpr double kRate = 90.0;
+constexpr double kTrackerRate = 90.0;
 const char* const kTables[] = {"objects.csv", "contacts.csv", "hands.csv", "events.csv"};
 
 struct Replayed {
   explicit Replayed(const std::string& motion) : scene(make_motion(motion).scene) {
     arguments.scene = "config/scenes/" + scene + ".urdf";
-    arguments.input = test::write_recording(folder / "recording.csv", test::motion_frames(motion, kRate, 0));
+    arguments.input =
+        test::write_recording(folder / "recording.csv", test::motion_frames(motion, kTrackerRate, 0));
     arguments.output = folder / "out";
   }
 
@@ -77,7 +78,7 @@ TEST(Replay, every_frame_has_its_rows_and_the_nudged_object_moves) {
 
 TEST(Replay, unusable_frames_are_counted_and_the_run_goes_on) {
   Replayed replayed("nudge");
-  auto frames = test::motion_frames("nudge", kRate, 0);
+  auto frames = test::motion_frames("nudge", kTrackerRate, 0);
   frames[10].stamp = frames[9].stamp;
   frames[20].hands[0].palm_centre = Vector3(50, 0, 0);
   test::write_recording(replayed.arguments.input, frames);
@@ -146,7 +147,7 @@ TEST(Replay, what_was_written_before_an_error_stays) {
 
 TEST(Replay, a_recording_without_a_usable_frame_is_an_error) {
   Replayed replayed("nudge");
-  auto frames = test::motion_frames("nudge", kRate, 0);
+  auto frames = test::motion_frames("nudge", kTrackerRate, 0);
   frames.resize(1);
   frames[0].hands[0].palm_centre = Vector3(50, 0, 0);
   test::write_recording(replayed.arguments.input, frames);

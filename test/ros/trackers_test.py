@@ -21,6 +21,7 @@ import rospkg
 import rospy
 import rostest
 from geometry_msgs.msg import Point, Point32, Pose, PoseArray, PoseStamped, WrenchStamped
+from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import PointCloud
 from std_msgs.msg import String
 
@@ -279,6 +280,22 @@ class TrackersTest(unittest.TestCase):
         motion = Motion(self.folder, 25, 60, 0.001).as_point_clouds()
         self.drive(motion)
         self.assertEqual(self.fault(self.check_as_live(motion, "/hands/right/point_cloud")), "")
+
+    def test_the_example_s_hand_comes_and_goes_without_a_warning(self):
+        motion = Motion(self.folder, 26, 60)
+        motion.messages = motion.messages[:3]
+        heard, listening = [], []
+        log = rospy.Subscriber("/rosout", Log, lambda said: heard.append(said.msg) if said.level >= Log.WARN else None)
+
+        def go():
+            wait_until(log.get_num_connections, "the nodes' log")
+            stamp = self.shown + rospy.Duration(0.005)
+            self.hands["right"].publish(EXAMPLE["hand"]([], "", stamp))  # nor does it name a frame
+            wait_until(lambda: stamp in self.kept["hands"], "the frame without a hand at %s" % stamp)
+            listening.append(stamp)
+        self.drive(motion, watch=go)
+        log.unregister()
+        self.assertEqual((len(listening), heard), (3, []))
 
     def test_standard_outputs_are_there_when_they_are_asked_for(self):
         motion = Motion(self.folder, 26, 60)

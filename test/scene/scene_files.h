@@ -56,8 +56,8 @@ inline std::string thing(const std::string& content, const std::string& origin =
 
 /// The message with which loading fails, checked to be one line that begins with the file; else "".
 inline std::string scene_error(const std::string& file, const SceneOptions& options = {}) {
-  testing::internal::CaptureStderr();
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
   std::string message;
   try {
     load_scene(file, options);
@@ -66,8 +66,8 @@ inline std::string scene_error(const std::string& file, const SceneOptions& opti
     EXPECT_EQ(std::string::npos, message.find('\n')) << message;
     EXPECT_EQ(0u, message.find(file.substr(0, file.rfind('.')))) << message;
   }
-  EXPECT_EQ("", testing::internal::GetCapturedStderr()) << "the libraries must not print";
-  EXPECT_EQ("", testing::internal::GetCapturedStdout()) << "the libraries must not print";
+  EXPECT_EQ("", ::testing::internal::GetCapturedStderr()) << "the libraries must not print";
+  EXPECT_EQ("", ::testing::internal::GetCapturedStdout()) << "the libraries must not print";
   return message;
 }
 

@@ -16,7 +16,7 @@ const char* const kInward = "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
 const double kVolume = 1e-3 / 6;
 
 /// A scene of one free body whose collision shape is a mesh.
-class MeshScene : public testing::Test {
+class MeshScene : public ::testing::Test {
  protected:
   std::string urdf(const std::string& attributes) {
     return folder_.write(

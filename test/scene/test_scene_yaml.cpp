@@ -6,7 +6,7 @@ namespace mrhi {
 namespace {
 
 /// A scene of one free body `thing` at the origin and this YAML beside it.
-class SceneYaml : public testing::Test {
+class SceneYaml : public ::testing::Test {
  protected:
   Scene load(const std::string& yaml, const SceneOptions& options = {}) {
     folder_.write("test.yaml", yaml);

@@ -7,7 +7,7 @@ namespace {
 
 constexpr Nanoseconds kFrame = 9'000'000;
 
-class Levels : public ::testing::Test {
+class InteractionLevels : public ::testing::Test {
  protected:
   void see(InteractionLevel level, int frames) {
     for (int i = 0; i < frames; ++i) {
@@ -25,7 +25,7 @@ class Levels : public ::testing::Test {
   std::vector<Event> events_;
 };
 
-TEST_F(Levels, go_up_and_down_one_by_one_in_their_fixed_order) {
+TEST_F(InteractionLevels, go_up_and_down_one_by_one_in_their_fixed_order) {
   see(InteractionLevel::hover, 3);
   see(InteractionLevel::contact, 3);
   see(InteractionLevel::grasp, 20);
@@ -35,13 +35,13 @@ TEST_F(Levels, go_up_and_down_one_by_one_in_their_fixed_order) {
                                     EventKind::grasp_end, EventKind::contact_end, EventKind::hover_end}));
 }
 
-TEST_F(Levels, a_touch_out_of_nowhere_makes_every_event_on_the_way) {
+TEST_F(InteractionLevels, a_touch_out_of_nowhere_makes_every_event_on_the_way) {
   see(InteractionLevel::grasp, 20);
   EXPECT_EQ(kinds(), (std::vector<EventKind>{EventKind::hover_begin, EventKind::contact_begin,
                                              EventKind::grasp_begin}));
 }
 
-TEST_F(Levels, one_noisy_frame_makes_no_event) {
+TEST_F(InteractionLevels, one_noisy_frame_makes_no_event) {
   see(InteractionLevel::contact, 5);
   events_.clear();
   see(InteractionLevel::grasp, 1);
@@ -56,7 +56,7 @@ TEST_F(Levels, one_noisy_frame_makes_no_event) {
   EXPECT_TRUE(events_.empty());
 }
 
-TEST_F(Levels, a_grasp_begins_only_once_it_has_lasted) {
+TEST_F(InteractionLevels, a_grasp_begins_only_once_it_has_lasted) {
   see(InteractionLevel::contact, 2);
   see(InteractionLevel::grasp, 4);  // 36 ms
   EXPECT_EQ(interaction_.level, InteractionLevel::contact);
@@ -64,7 +64,7 @@ TEST_F(Levels, a_grasp_begins_only_once_it_has_lasted) {
   EXPECT_EQ(interaction_.level, InteractionLevel::grasp);
 }
 
-TEST_F(Levels, end_at_once_when_the_hand_is_lost) {
+TEST_F(InteractionLevels, end_at_once_when_the_hand_is_lost) {
   see(InteractionLevel::grasp, 20);
   events_.clear();
   end_interaction({now_, EventKind::hover_end, 0, 1}, interaction_, events_);

@@ -11,8 +11,8 @@ using testing::at;
 using testing::box_body;
 using testing::finger;
 
-constexpr double kCube = 0.05;   // edge [m]
-constexpr double kRate = 100.0;  // [1/s]
+constexpr double kCube = 0.05;       // edge [m]
+constexpr double kSlowRate = 100.0;  // [1/s]
 
 Body block(const char* name, const Vector3& position) {
   Body body = box_body(Vector3::Constant(kCube), 0.1);
@@ -42,8 +42,8 @@ struct Played {
     return configuration;
   }
   void run(double until, const std::function<std::vector<Hand>(double)>& hands = nullptr) {
-    for (; frame <= std::lround(until * kRate); ++frame) {
-      const double t = static_cast<double>(frame) / kRate;
+    for (; frame <= std::lround(until * kSlowRate); ++frame) {
+      const double t = static_cast<double>(frame) / kSlowRate;
       simulation.advance({at(t), hands ? hands(t) : std::vector<Hand>()});
     }
   }
@@ -108,7 +108,7 @@ TEST(Sleeping, a_hand_that_comes_finds_them_awake_and_moves_them_as_if_they_had_
     sleeping.goes_on(slept);
     awake.goes_on(waked);
     const auto apart = [&](std::size_t cube) { return (sleeping.place(cube) - awake.place(cube)).norm(); };
-    for (double t = 2.5; awake.place(2).x() < 0.013 && t < 4.5; t += 1.0 / kRate) {
+    for (double t = 2.5; awake.place(2).x() < 0.013 && t < 4.5; t += 1.0 / kSlowRate) {
       sleeping.run(t, pushing);
       awake.run(t, pushing);
     }

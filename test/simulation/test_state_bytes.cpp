@@ -17,10 +17,10 @@ namespace {
 
 using testing::at;
 
-constexpr double kRate = 120.0;
+constexpr double kPinchRate = 120.0;
 
 HandFrame frame_of(const testing::PinchScene& pinch, int i) {
-  const double t = i / kRate;
+  const double t = i / kPinchRate;
   const Vector3 sway = t < 0.5 ? Vector3::Zero() : testing::swing(t - 0.5, 0.05, 1.0);
   return {at(t), {pinch.hand(t, sway)}};
 }

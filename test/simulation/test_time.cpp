@@ -15,7 +15,7 @@ using testing::finger;
 using testing::scene_of;
 using testing::unfiltered;
 
-constexpr double kRate = 110.0;
+constexpr double kTrackerRate = 110.0;
 
 /// A fingertip that pushes the cube along +x and sways.
 Hand pushing(double t) {
@@ -31,7 +31,7 @@ Scene drifting_cube() {
 
 std::uint64_t run(Simulation& simulation, int from, int to) {
   for (int i = from; i < to; ++i) {
-    const double t = i / kRate;
+    const double t = i / kTrackerRate;
     simulation.advance({at(t), {pushing(t)}});
   }
   return hash(simulation.state());
@@ -46,7 +46,8 @@ TEST(Determinism, the_same_frames_give_the_same_bits) {
 TEST(Determinism, the_hash_does_not_depend_on_the_time_of_day) {
   Simulation now(drifting_cube(), unfiltered()), later(drifting_cube(), unfiltered());
   run(now, 0, 60);
-  for (int i = 0; i < 60; ++i) later.advance({at(i / kRate) + 86'400'000'000'000, {pushing(i / kRate)}});
+  for (int i = 0; i < 60; ++i)
+    later.advance({at(i / kTrackerRate) + 86'400'000'000'000, {pushing(i / kTrackerRate)}});
   EXPECT_EQ(hash(now.state()), hash(later.state()));
 }
 
@@ -110,12 +111,12 @@ TEST(Time, a_repeated_or_earlier_stamp_is_refused_and_changes_nothing) {
   Simulation simulation(drifting_cube(), unfiltered());
   run(simulation, 0, 50);
   const std::uint64_t before = hash(simulation.state());
-  const double last = 49 / kRate;
+  const double last = 49 / kTrackerRate;
   for (const double stamp : {last, last - 0.001, last - 0.3, last - 100.0}) {
     EXPECT_EQ(simulation.advance({at(stamp), {pushing(last)}}), Rejection::stamp_not_increasing) << stamp;
     EXPECT_EQ(hash(simulation.state()), before) << stamp;
   }
-  EXPECT_EQ(simulation.advance({at(50 / kRate), {pushing(last)}}), Rejection::none);
+  EXPECT_EQ(simulation.advance({at(50 / kTrackerRate), {pushing(last)}}), Rejection::none);
 }
 
 TEST(Time, a_lone_frame_from_the_future_or_the_past_is_left_out) {
@@ -124,7 +125,7 @@ TEST(Time, a_lone_frame_from_the_future_or_the_past_is_left_out) {
     run(calm, 0, 100);
     run(disturbed, 0, 50);
     for (int i = 50; i < 100; ++i) {
-      const double t = i / kRate;
+      const double t = i / kTrackerRate;
       if (i % 7 == 0) {
         EXPECT_NE(disturbed.advance({at(t + off), {pushing(t)}}), Rejection::none) << off;
       }
@@ -167,7 +168,7 @@ TEST(Time, a_stamp_that_is_none_is_refused_and_the_next_frame_is_taken) {
     EXPECT_EQ(fresh.advance({at(0.0), {}}), Rejection::none);
     run(running, 0, 50);
     EXPECT_EQ(running.advance({stamp, {}}), Rejection::no_stamp);
-    EXPECT_EQ(running.advance({at(50 / kRate), {}}), Rejection::none);
+    EXPECT_EQ(running.advance({at(50 / kTrackerRate), {}}), Rejection::none);
   }
 }
 
@@ -189,7 +190,7 @@ TEST(Time, a_clock_that_tells_what_none_can_does_no_harm) {
   const std::uint64_t before = hash(simulation.state());
   for (const Nanoseconds now : {kMost, -kMost - 1}) {
     EXPECT_FALSE(simulation.advance_without_hands(now));
-    EXPECT_EQ(simulation.begin({at(49 / kRate), {}}, now), Rejection::stamp_not_increasing);
+    EXPECT_EQ(simulation.begin({at(49 / kTrackerRate), {}}, now), Rejection::stamp_not_increasing);
     EXPECT_EQ(hash(simulation.state()), before);
   }
   EXPECT_EQ(simulation.begin({at(0.9), {}}, -kMost - 1), Rejection::stamp_ahead);
@@ -198,9 +199,9 @@ TEST(Time, a_clock_that_tells_what_none_can_does_no_harm) {
 TEST(Time, a_stream_that_begins_anew_restarts_everything_at_its_third_frame) {
   Simulation simulation(drifting_cube(), unfiltered()), fresh(drifting_cube(), unfiltered());
   run(simulation, 100, 200);
-  EXPECT_EQ(simulation.advance({at(0 / kRate), {pushing(0)}}), Rejection::stamp_not_increasing);
-  EXPECT_EQ(simulation.advance({at(1 / kRate), {pushing(0)}}), Rejection::stamp_not_increasing);
-  EXPECT_EQ(simulation.advance({at(2 / kRate), {pushing(2 / kRate)}}), Rejection::none);
+  EXPECT_EQ(simulation.advance({at(0 / kTrackerRate), {pushing(0)}}), Rejection::stamp_not_increasing);
+  EXPECT_EQ(simulation.advance({at(1 / kTrackerRate), {pushing(0)}}), Rejection::stamp_not_increasing);
+  EXPECT_EQ(simulation.advance({at(2 / kTrackerRate), {pushing(2 / kTrackerRate)}}), Rejection::none);
   EXPECT_TRUE(simulation.result().restarted);
   run(fresh, 2, 3);
   EXPECT_EQ(run(simulation, 3, 50), run(fresh, 3, 50));
@@ -211,7 +212,7 @@ TEST(Time, a_report_before_the_end_has_all_but_the_rendered_hands_and_changes_no
   Simulation asked(drifting_cube(), unfiltered()), plain(drifting_cube(), unfiltered());
   run(asked, 0, 60);
   run(plain, 0, 60);
-  const HandFrame frame{at(60 / kRate), {pushing(60 / kRate)}};
+  const HandFrame frame{at(60 / kTrackerRate), {pushing(60 / kTrackerRate)}};
   ASSERT_EQ(asked.begin(frame), Rejection::none);
   while (asked.step()) {
   }
@@ -232,7 +233,7 @@ TEST(Silence, computed_bit_by_bit_or_in_one_go_it_gives_the_same_bits) {
     Simulation replayed(drifting_cube(), unfiltered()), live(drifting_cube(), unfiltered());
     run(replayed, 0, 70);
     run(live, 0, 70);
-    const double last = 69 / kRate;
+    const double last = 69 / kTrackerRate;
     for (double t = last; t < last + gap - 0.001; t += 0.0137) live.advance_without_hands(at(t));
     for (Simulation* simulation : {&replayed, &live}) {
       const Nanoseconds now = at(last + gap);  // as a clock says too
@@ -267,7 +268,7 @@ TEST(Silence, within_hold_time_nothing_is_computed_ahead_of_the_next_frame) {
   Simulation simulation(drifting_cube(), unfiltered());
   run(simulation, 0, 70);
   const std::uint64_t before = hash(simulation.state());
-  EXPECT_FALSE(simulation.advance_without_hands(at(69 / kRate + 0.15)));
+  EXPECT_FALSE(simulation.advance_without_hands(at(69 / kTrackerRate + 0.15)));
   EXPECT_EQ(hash(simulation.state()), before);
 }
 
@@ -275,7 +276,7 @@ TEST(Silence, objects_fly_on_and_the_hand_is_lost_with_its_interactions_ended_fi
   Simulation simulation(drifting_cube(), unfiltered());
   run(simulation, 0, 70);
   const double x = simulation.state().bodies[0].pose.position.x();
-  ASSERT_TRUE(simulation.advance_without_hands(at(69 / kRate + 1.0)));
+  ASSERT_TRUE(simulation.advance_without_hands(at(69 / kTrackerRate + 1.0)));
   EXPECT_GT(simulation.state().bodies[0].pose.position.x(), x + 0.01);
   const std::vector<Event>& events = simulation.result().events;
   ASSERT_FALSE(events.empty());

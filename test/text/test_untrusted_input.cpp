@@ -92,7 +92,7 @@ TEST(XmlDanger, text_is_utf8_without_control_characters) {
 }
 
 TEST(XmlDanger, length_is_bounded) {
-  const std::string blanks(kMostXmlBytes, ' ');
+  const std::string blanks(kMaxXmlBytes, ' ');
   EXPECT_FALSE(xml_danger(blanks));
   EXPECT_EQ(xml_danger(blanks + ' '), "is longer than 4194304 bytes; allowed: at most that");
 }

@@ -5,7 +5,7 @@
 namespace mrhi {
 namespace {
 
-constexpr std::size_t kTip = 3;  // of the thumb
+constexpr std::size_t kThumbTip = 3;  // of the thumb
 
 /// A hand of one bone whose points are all at x along the x axis.
 class PathOfAHand : public ::testing::Test {
@@ -13,7 +13,7 @@ class PathOfAHand : public ::testing::Test {
   void go_to(double x, double elapsed) {
     Hand hand;
     hand.palm.position.x() = x;
-    hand.capsules[kTip] = {Vector3(x, 0, 0), Vector3(x, 0.02, 0), 0.008};
+    hand.capsules[kThumbTip] = {Vector3(x, 0, 0), Vector3(x, 0.02, 0), 0.008};
     track_.previous = frames_++ == 0 ? hand : track_.current;
     track_.current = hand;
     if (frames_ == 1) return;

@@ -49,7 +49,7 @@ std::string text(const std::string& file) {
   return all.str();
 }
 
-class SessionTest : public testing::Test {
+class SessionTest : public ::testing::Test {
  protected:
   Session open(const SessionHeader& who = header(), Nanoseconds now = 0) {
     return Session(three_objects(), who, 0, path_, now);

@@ -30,7 +30,7 @@ const std::string kStl =
     "facet normal 0 0 0\nouter loop\nvertex 0.1 0 0\nvertex 0 0.1 0\nvertex 0 0 0.1\nendloop\nendfacet\n"
     "endsolid t\n";
 
-class SessionSetupTest : public testing::Test {
+class SessionSetupTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_.write("thing.urdf", test::thing(test::kInertial + std::string(test::kBox)));

@@ -11,7 +11,7 @@ namespace {
 const std::string kHead = "name: t\nobjects: [{name: cube, position: [0, 0, 0.2]}]\n";
 const std::string kGoals = "goals:\n  - pick: {}\n";
 
-class TaskFile : public testing::Test {
+class TaskFile : public ::testing::Test {
  protected:
   Task load(const std::string& yaml) { return load_task(folder_.write("task.yaml", yaml)); }
   /// The message of the refusal, checked to be one line that begins with the file.
