@@ -8,7 +8,8 @@ namespace {
 
 const Rgb kBack(0.91f, 0.73f, 0.62f), kPalmar(0.95f, 0.74f, 0.65f), kBlush(0.93f, 0.62f, 0.53f),
     kNail(1.0f, 0.80f, 0.76f), kNailFold(0.66f, 0.43f, 0.36f);
-const Rgb kCreaseTint(0.80f, 0.66f, 0.62f);             // of the skin's colour, in the deepest fold
+const Rgb kCreaseTint(0.85f, 0.74f, 0.70f);  // of the skin's colour, in the deepest fold
+constexpr float kPalmCreases = 0.5f;  // of that: lines across the palm's wide triangles would look torn
 constexpr double kFadesFrom = -0.010, kFaded = -0.034;  // x of the rest hand [m]
 constexpr double kRound = 0.85;                         // how far round the finger half a nail goes [rad]
 constexpr double kBegins = 0.42, kPast = 0.72;  // along the bone, of its length; past its end, in its radii
@@ -63,7 +64,10 @@ SkinModel::Look skin_look(const Vector3& vertex, bool creases) {
   const auto palmar = static_cast<float>(smooth_step(0.004, -0.008, vertex.z()));
   Rgb colour = kBack + palmar * (kPalmar - kBack);
   if (bone_of(most) >= 2) colour = finger_colour(finger_of(most), vertex, colour);
-  if (creases) colour *= 1.0f - static_cast<float>(skin_crease(vertex)) * (1.0f - kCreaseTint);
+  if (creases) {
+    const float deep = bone_of(most) == 0 ? kPalmCreases : 1.0f;
+    colour *= 1.0f - deep * static_cast<float>(skin_crease(vertex)) * (1.0f - kCreaseTint);
+  }
   return {with_nail(vertex, colour), static_cast<float>(smooth_step(kFadesFrom, kFaded, vertex.x())), most};
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "../ros/network_thread.h"
 #include "../ros/node.h"
 #include "mr_hand_interaction/ros/hand_tracking.h"
 #include "mr_hand_interaction/ros/interaction_server.h"
@@ -23,14 +24,16 @@ parameters of both. The parameters of hand_tracking_node are in ~hand_tracking. 
 /// Parameters of tracking are in ~hand_tracking.
 int main(int argc, char** argv) {
   const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
-    mrhi::InteractionServer server(node, private_node, mrhi::read_server_parameters(private_node));
-    mrhi::HandTracking tracking(node, ros::NodeHandle(private_node, "hand_tracking"));
+    mrhi::NetworkThreadQueue queue;
+    const ros::NodeHandle here = queue.handle(node), private_here = queue.handle(private_node);
+    mrhi::InteractionServer server(here, private_here, mrhi::read_server_parameters(private_node));
+    mrhi::HandTracking tracking(here, ros::NodeHandle(private_here, "hand_tracking"));
     std::uint64_t lost = 0;  // number already reported to the server
     tracking.pass_to([&](mrhi::HandFrame frame, const std::string& frame_id, const ros::Time& arrival) {
       server.note_lost(tracking.lost() - std::exchange(lost, tracking.lost()));
       server.take(std::move(frame), frame_id, arrival);
     });
-    ros::spin();
+    queue.spin();
   };
   return mrhi::run_node(argc, argv, "interaction_node", kUsage, body);
 }

@@ -1,3 +1,4 @@
+#include "../ros/network_thread.h"
 #include "../ros/node.h"
 #include "mr_hand_interaction/ros/hand_tracking.h"
 
@@ -25,5 +26,10 @@ Subscribes to hand trackers, and publishes their hands in the world frame on han
 }  // namespace
 
 int main(int argc, char** argv) {
-  return mrhi::run_node<mrhi::HandTracking>(argc, argv, "hand_tracking_node", kUsage);
+  const auto body = [](const auto& node, const auto& private_node) {
+    mrhi::NetworkThreadQueue queue;
+    const mrhi::HandTracking tracking(queue.handle(node), queue.handle(private_node));
+    queue.spin();
+  };
+  return mrhi::run_node(argc, argv, "hand_tracking_node", kUsage, body);
 }

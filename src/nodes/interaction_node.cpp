@@ -1,5 +1,6 @@
 #include <ros/ros.h>
 
+#include "../ros/network_thread.h"
 #include "../ros/node.h"
 #include "mr_hand_interaction/ros/interaction_server.h"
 
@@ -25,10 +26,13 @@ and all parameters of config/default.yaml, such as _contact_model:=seed.
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto body = [](ros::NodeHandle node, const ros::NodeHandle& private_node) {
-    mrhi::InteractionServer server(node, private_node, mrhi::read_server_parameters(private_node));
-    server.subscribe(node);
-    ros::spin();
+  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+    mrhi::NetworkThreadQueue queue;
+    ros::NodeHandle here = queue.handle(node);
+    mrhi::InteractionServer server(here, queue.handle(private_node),
+                                   mrhi::read_server_parameters(private_node));
+    server.subscribe(here);
+    queue.spin();
   };
   return mrhi::run_node(argc, argv, "interaction_node", kUsage, body);
 }

@@ -225,8 +225,8 @@ double flattened(double height, double depth) {
   return std::max(0.0, 1.5 * (height - depth));
 }
 
-/// Distance from the rim to the lid's centre [m].
-constexpr double kLidDepth = 0.01;
+/// Distance from the rim to the lid's centre, into the hand [m].
+constexpr double kLidDepth = 0.006;
 
 }  // namespace
 
@@ -384,8 +384,7 @@ SkinWrist::SkinWrist(const Skin& skin) : skin_(skin) {
   }
 }
 
-/// The lid lies inside the wrist: level with the rim, flat skin would be above it. It is lit like its side of
-/// the hand, so that the end of the wrist looks round.
+/// The lid lies inside the hand: it is hidden except from the forearm. It is lit like its side of the hand.
 void SkinWrist::add_lid(SkinSurface& surface, std::vector<Rgb>& colours) const {
   Vector3 rim = Vector3::Zero(), faded = Vector3::Zero();
   Rgb colour = Rgb::Zero(), light = Rgb::Zero();
@@ -398,7 +397,7 @@ void SkinWrist::add_lid(SkinSurface& surface, std::vector<Rgb>& colours) const {
     for (const std::uint32_t v : triangle)
       faded += surface.vertices[v] / (3.0 * static_cast<double>(fading_.size()));
   const Vector3 outward = (faded - rim).normalized();
-  surface.vertices.push_back(rim + kLidDepth * outward);
+  surface.vertices.push_back(rim - kLidDepth * outward);
   surface.normals.push_back(outward);
   colours.push_back((colour / light * light_on(outward.cast<float>())).min(1.0f));
 }

@@ -102,7 +102,7 @@ class BetweenFrames {
 };
 
 /// Interactive markers that move free objects with the mouse in rviz, at ~place. Feedback arrives by the
-/// node's own callback queue; dragged() polls it.
+/// global callback queue, perhaps in another thread; dragged() polls it.
 class Placing {
  public:
   Placing(const ros::NodeHandle& private_node, const std::string& fixed_frame)
@@ -112,6 +112,7 @@ class Placing {
     if (on == (server_ != nullptr)) return;
     server_ = on ? std::make_unique<interactive_markers::InteractiveMarkerServer>(topic_) : nullptr;
     if (on) renew(simulation);
+    const std::lock_guard<std::mutex> lock(drags_mutex_);
     drags_.clear();
   }
 
@@ -145,6 +146,7 @@ class Placing {
   std::map<std::string, Pose> dragged() {
     std::map<std::string, Pose> poses;
     if (!server_) return poses;
+    const std::lock_guard<std::mutex> lock(drags_mutex_);
     const ros::SteadyTime silent_since = ros::SteadyTime::now() - ros::WallDuration(kSilence);
     for (auto drag = drags_.begin(); drag != drags_.end();) {
       if (drag->second.heard < silent_since) {
@@ -200,6 +202,7 @@ class Placing {
     ros::SteadyTime heard;
   };
   void take(const Feedback& feedback) {
+    const std::lock_guard<std::mutex> lock(drags_mutex_);
     const auto drag = drags_.find(feedback.marker_name);
     if (feedback.event_type == Feedback::MOUSE_UP && drag != drags_.end()) drags_.erase(drag);
     if (feedback.event_type == Feedback::KEEP_ALIVE && drag != drags_.end())
@@ -213,6 +216,7 @@ class Placing {
 
   std::string topic_, fixed_frame_;
   std::unique_ptr<interactive_markers::InteractiveMarkerServer> server_;
+  std::mutex drags_mutex_;
   std::map<std::string, Drag> drags_;
 };
 

@@ -205,6 +205,7 @@ class MarkerScene {
     if (is_body && marker.color.a > 0.0f) brighten(marker.color, *item->drawn);
     if (!is_body || marker.text.empty()) return;
     if (!item->selection) item->selection = selection_(marker.text, item->node);
+    item->selection->updateTrackedBoxes();  // the frame of what is selected follows the body
     // Set each time: the marker resets the handle.
     rviz::SelectionManager::setPickHandle(item->selection->getHandle(), item->node);
   }
