@@ -81,7 +81,8 @@ std::vector<NoisyReplay> runs() {
   for (const char* parameter : {"contact/edge_grip", "contact/two_points"})
     all.push_back({"lift_flat", "flat_cuboid", "implicit", "-9.81", 90, false, parameter, "false"});
   all.push_back({"slap", "cube", "implicit", "0", 30, false, "contact/sweep", "false"});
-  all.push_back({"grasp_cube", "cube", "seed", "0", 90, false, "seed/literal", "true"});
+  for (const char* motion : {"grasp_cube", "slap", "catch_ball", "nudge"})
+    all.push_back({motion, make_motion(motion).scene, "seed", "0", 90, false, "seed/literal", "true"});
   for (const char* scene : {"bag", "crate", "docking", "handrails", "hatch"})
     all.push_back({"grasp_cube", scene, "implicit", "0", 90});
   return all;
