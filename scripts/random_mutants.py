@@ -11,22 +11,22 @@ import re
 REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # Suites for each folder, those that are likely to notice first.
 SUITES = {
-    "math": "math rendering simulation",
+    "math": "regression math rendering simulation",
     "text": "text scene training replay",
-    "scene": "scene training simulation joints",
+    "scene": "regression scene training simulation joints",
     "configuration": "scene simulation ros",
-    "tracking": "tracking simulation rendering laws",
-    "collision": "collision laws regression",
-    "response": "laws joints regression",
-    "integration": "integration joints laws simulation",
-    "joints": "joints laws simulation",
-    "simulation": "simulation laws synthetic",
-    "rendering": "rendering ros",
-    "synthetic": "synthetic operators",
+    "tracking": "regression tracking simulation rendering laws",
+    "collision": "regression collision laws",
+    "response": "regression laws joints",
+    "integration": "regression integration joints laws simulation",
+    "joints": "regression joints laws simulation",
+    "simulation": "regression simulation laws synthetic",
+    "rendering": "regression rendering ros",
+    "synthetic": "regression synthetic operators",
     "training": "training operators",
     "ros": "ros wire",
     "record": "replay ros",
-    "replay": "replay",
+    "replay": "replay regression",
 }
 SWAPS = [
     (" < ", " <= "), (" <= ", " < "), (" > ", " >= "), (" >= ", " > "), (" == ", " != "), (" != ", " == "),

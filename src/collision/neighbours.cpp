@@ -46,6 +46,8 @@ namespace {
 constexpr double kMargin = 0.002;
 constexpr double kMarginFraction = 0.1;
 constexpr double kMarginTime = 0.01;
+/// Fraction of its padding from which a body is placed anew when another leaves its sphere.
+constexpr double kUsedPadding = 0.5;
 /// Largest gap at which pairs are listed [m]: ContactFinder's margin of 1 mm, and a fall of 2 mm, from rest
 /// within 20 ms at 1 g.
 constexpr double kMaxGap = 0.004;
@@ -153,27 +155,30 @@ bool Neighbours::may_meet(std::size_t a, std::size_t b, const std::vector<BodySt
 
 /// A body leaves if |moved| + |v| step may exceed its padding, tested as 2 (moved^2 + (v step)^2) > padding^2
 /// without a root. A body that was just placed stays: its padding contains 2 v step, and the test needs
-/// sqrt(2) v step.
+/// sqrt(2) v step. If one leaves, all are placed anew that have used much of their padding: in a heap one
+/// body or another would leave in nearly every step.
 bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, double step) {
-  bool any = false;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+  const auto uses = [&](std::size_t b, double part) {
     const Body& body = scene_.bodies[b];
-    if (body.is_operator) continue;  // never placed, never found
-    PaddedSphere& sphere = padded_[b];
+    if (body.is_operator) return false;  // never placed, never found
     const double travel = body.fixed ? 0.0 : step / body.mass;
-    const Vector3& position = bodies[b].pose.position;
-    // Twice the sum of squares is no less than the square of the sum.
-    const double moved_squared = 2.0 * ((position - sphere.centre).squaredNorm() +
-                                        travel * travel * bodies[b].linear_momentum.squaredNorm());
-    if (moved_squared <= sphere.padding_squared) continue;
+    return 2.0 * ((bodies[b].pose.position - padded_[b].centre).squaredNorm() +
+                  travel * travel * bodies[b].linear_momentum.squaredNorm()) >
+           part * part * padded_[b].padding_squared;
+  };
+  std::size_t leaving = 0;
+  while (leaving < bodies.size() && !uses(leaving, 1.0)) ++leaving;
+  if (leaving == bodies.size()) return false;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!uses(b, kUsedPadding)) continue;
+    const Body& body = scene_.bodies[b];
     const double speed = body.fixed ? 0.0 : bodies[b].linear_momentum.norm() / body.mass;
     const double padding =
         kMargin + kMarginFraction * body.bounding_radius + (kMarginTime + 2.0 * step) * speed;
-    sphere = {position, padding * padding, body.bounding_radius + padding + kMaxGap};
-    broad_phase_.update(static_cast<int>(b), position, sphere.radius);
-    any = true;
+    padded_[b] = {bodies[b].pose.position, padding * padding, body.bounding_radius + padding + kMaxGap};
+    broad_phase_.update(static_cast<int>(b), padded_[b].centre, padded_[b].radius);
   }
-  return any;
+  return true;
 }
 
 void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
@@ -201,6 +206,10 @@ void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
 void Neighbours::list_pairs() {
   pairs_.clear();
   for (std::pair<int, int> pair : broad_phase_.pairs()) {
+    const PaddedSphere &first = padded_[static_cast<std::size_t>(pair.first)],
+                       &second = padded_[static_cast<std::size_t>(pair.second)];
+    const double reach = first.radius + second.radius;
+    if ((first.centre - second.centre).squaredNorm() > reach * reach) continue;
     const bool fixed_first = scene_.bodies[static_cast<std::size_t>(pair.first)].fixed;
     const bool fixed_second = scene_.bodies[static_cast<std::size_t>(pair.second)].fixed;
     if (fixed_first && fixed_second) continue;
@@ -208,10 +217,12 @@ void Neighbours::list_pairs() {
     if (!std::binary_search(untouching_.begin(), untouching_.end(), pair)) pairs_.push_back(pair);
   }
   std::sort(pairs_.begin(), pairs_.end());
+  is_paired_.assign(scene_.bodies.size(), 0);
+  for (const auto& [a, b] : pairs_)
+    is_paired_[static_cast<std::size_t>(a)] = is_paired_[static_cast<std::size_t>(b)] = 1;
   paired_.clear();
-  for (const auto& [a, b] : pairs_) paired_.push_back(a), paired_.push_back(b);
-  std::sort(paired_.begin(), paired_.end());
-  paired_.erase(std::unique(paired_.begin(), paired_.end()), paired_.end());
+  for (std::size_t b = 0; b < is_paired_.size(); ++b)
+    if (is_paired_[b]) paired_.push_back(static_cast<int>(b));
 }
 
 }  // namespace mrhi

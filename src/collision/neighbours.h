@@ -147,6 +147,7 @@ class Neighbours {
   std::vector<Reach> reaches_;
   std::vector<std::vector<NearBody>> near_hand_;
   std::vector<std::pair<int, int>> pairs_, untouching_;  // sorted
+  std::vector<char> is_paired_;                          // by body
   std::vector<int> paired_;
 };
 

@@ -7,6 +7,7 @@
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/simulation.h"
+#include "support/fixtures.h"
 
 namespace mrhi {
 namespace {
@@ -59,6 +60,25 @@ TEST(ContactModels, are_listed_wherever_all_of_them_are) {
     ASSERT_FALSE(text.empty()) << file;
     for (const ContactModelEntry* model : contact_models())
       EXPECT_NE(text.find(model->name), std::string::npos) << model->name << " is not in " << file;
+  }
+}
+
+// The cube ends at the surface, or ahead of it by an impact; the softest model lets it in by some
+// millimetres.
+TEST(ContactModels, each_phalanx_and_the_palm_push_what_they_meet) {
+  constexpr double kEdge = 0.05, kRadius = 0.01, kSpeed = 0.1, kFrom = -0.06, kSeconds = 0.5;
+  for (const ContactModelEntry* model : contact_models()) {
+    for (int capsule = 0; capsule < kCapsules; ++capsule) {
+      Simulation simulation(testing::scene_of(testing::box_body(Vector3::Constant(kEdge), 0.1)),
+                            testing::unfiltered({model->name}));
+      testing::play(simulation, 0.0, kSeconds, 100.0, [capsule](double t) {
+        const Vector3 middle(kFrom + kSpeed * t, 0, 0), half(0, 0.02, 0);
+        return testing::finger(middle - half, middle + half, kRadius, capsule);
+      });
+      const double pushed_to = kFrom + kSpeed * kSeconds + kRadius + 0.5 * kEdge;
+      EXPECT_GT(simulation.state().bodies[0].pose.position.x(), pushed_to - 0.005)
+          << model->name << ", capsule " << capsule;
+    }
   }
 }
 

@@ -3,12 +3,20 @@
 
 #include <cinttypes>
 #include <cstdlib>
+#include <cstring>
 #include <map>
+#include <random>
 
 #include "mr_hand_interaction/replay/replay.h"
 #include "mr_hand_interaction/response/contact_model.h"
+#include "mr_hand_interaction/scene/save_scene.h"
+#include "mr_hand_interaction/scene/scene_loader.h"
+#include "mr_hand_interaction/simulation_state.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
+#include "operators/operators_at_work.h"
 #include "replay/replay_files.h"
+#include "support/fixtures.h"
+#include "support/tessellated.h"
 
 namespace mrhi {
 namespace {
@@ -22,11 +30,34 @@ struct NoisyReplay {
   std::string motion, scene, model, gravity;
   int rate;           // [1/s]
   bool both = false;  // a left hand does the same, mirrored
+  std::string parameter = "", value = "";
 
   std::string name() const {
-    return motion + "," + scene + "," + model + "," + gravity + "," + std::to_string(rate) + "," +
-           (both ? "2" : "1");
+    return motion + "," + scene + (parameter.empty() ? "" : " " + parameter + " " + value) + "," + model +
+           "," + gravity + "," + std::to_string(rate) + "," + (both ? "2" : "1");
   }
+};
+
+/// Values that differ from the defaults.
+const std::pair<const char*, const char*> kParameters[] = {
+    {"filter/type", "none"},
+    {"filter/type", "window"},
+    {"filter/type", "one_euro"},
+    {"filter/noise", "0.001"},
+    {"contact/anchors", "false"},
+    {"contact/damping", "false"},
+    {"contact/grasp_assist", "false"},
+    {"contact/impact_friction", "false"},
+    {"contact/release_fade", "false"},
+    {"contact/sleep", "false"},
+    {"contact/swing_back", "false"},
+    {"contact/torsion", "false"},
+    {"hand/strength", "unlimited"},
+    {"hand/pad", "0"},
+    {"hand/restitution", "0.5"},
+    {"hand/joint_speed", "3"},
+    {"rendering/control_display_ratio", "1.5"},
+    {"material/restitution", "0.9"},
 };
 
 std::vector<NoisyReplay> runs() {
@@ -45,6 +76,15 @@ std::vector<NoisyReplay> runs() {
   for (const int rate : {30, 60, 120}) all.push_back({"grasp_cube", "cube", "implicit", "0", rate});
   for (const char* motion : {"grasp_cube", "grasp_ball", "nudge"})
     all.push_back({motion, make_motion(motion).scene, "implicit", "0", 120, true});
+  for (const auto& [parameter, value] : kParameters)
+    all.push_back({"grasp_cube", "cube_on_table", "implicit", "-9.81", 90, false, parameter, value});
+  for (const char* parameter : {"contact/edge_grip", "contact/two_points"})
+    all.push_back({"lift_flat", "flat_cuboid", "implicit", "-9.81", 90, false, parameter, "false"});
+  all.push_back({"slap", "cube", "implicit", "0", 30, false, "contact/sweep", "false"});
+  for (const char* motion : {"grasp_cube", "slap", "catch_ball", "nudge"})
+    all.push_back({motion, make_motion(motion).scene, "seed", "0", 90, false, "seed/literal", "true"});
+  for (const char* scene : {"bag", "crate", "docking", "handrails", "hatch"})
+    all.push_back({"grasp_cube", scene, "implicit", "0", 90});
   return all;
 }
 
@@ -78,6 +118,7 @@ std::string bits_of(const NoisyReplay& run) {
   arguments.input = test::write_recording(folder / "recording.csv", frames);
   arguments.output = folder / "out";
   arguments.settings = {{"contact_model", run.model}, {"gravity", "[0, 0, " + run.gravity + "]"}};
+  if (!run.parameter.empty()) arguments.settings.emplace_back(run.parameter, run.value);
   replay(arguments);
   std::uint64_t state = 0;
   for (const std::string& line : test::lines_of(folder / "out/summary.json")) {
@@ -92,7 +133,146 @@ std::string bits_of(const NoisyReplay& run) {
   return text;
 }
 
-TEST(Bits, of_replays_are_those_that_were_reviewed) {
+/// Three bodies of every kind of shape, thrown at each other over a table: each kind meets each.
+struct Pile {
+  double gravity, restitution;
+  int rate;  // of steps [1/s]
+
+  std::string name() const {
+    return "pile,restitution " + std::to_string(restitution).substr(0, 3) + ",implicit," +
+           (gravity == 0.0 ? "0" : "-9.81") + "," + std::to_string(rate) + ",1";
+  }
+};
+constexpr Pile kPiles[] = {{-9.81, 0.3, 1000}, {-9.81, 0.3, 120}, {0.0, 1.0, 1000}, {0.0, 0.5, 60}};
+
+std::vector<PlacedShape> shapes_of_kind(int kind) {
+  const auto mesh = [](TriangleMesh triangles) {
+    return Mesh{std::make_shared<const TriangleMesh>(std::move(triangles)), "", Vector3::Ones()};
+  };
+  switch (kind) {
+    case 0:
+      return {{Box{Vector3(0.03, 0.02, 0.012)}, {}}};
+    case 1:
+      return {{Sphere{0.018}, {}}};
+    case 2:
+      return {{Cylinder{0.016, 0.025}, {}}};
+    case 3:
+      return {{Pill{0.012, 0.02}, {}}};
+    case 4:
+      return {{mesh(testing::tessellated_box(Vector3(0.025, 0.018, 0.014), 2)), {}}};
+    default:
+      return {{Box{Vector3(0.03, 0.01, 0.01)}, {}},
+              {Cylinder{0.01, 0.02}, {{0.02, 0.0, 0.02}, Quaternion::Identity()}}};
+  }
+}
+
+Scene scene_of(const Pile& pile) {
+  Body table = testing::box_body(Vector3(1.0, 1.0, 0.1), 1.0);
+  table.name = "table";
+  table.fixed = true;
+  table.start.position.z() = 0.05;
+  Scene scene = testing::scene_of(table);
+  scene.gravity = Vector3(0, 0, pile.gravity);
+  std::mt19937 random(7);
+  const auto next = [&random] { return 2.0 * random() / 4294967296.0 - 1.0; };
+  for (int i = 0; i < 18; ++i) {
+    Body body;
+    body.name = "body" + std::to_string(i);
+    body.mass = 0.02 + 0.01 * (i % 4);
+    body.inertia = body.mass * 0.0003 * Vector3(0.6, 0.8, 1.0).asDiagonal();
+    body.material.restitution = pile.restitution;
+    body.shapes = shapes_of_kind(i % 6);
+    body.start.position = Vector3(0.1 * (i % 3 - 1), 0.05 + 0.1 * (i / 3 % 3 - 1), 0.2 + 0.1 * (i / 9));
+    body.start.orientation = Quaternion(1.0 + next(), next(), next(), next()).normalized();
+    body.start_twist.linear = 3.0 * (Vector3(0, 0.05, 0.25) - body.start.position);
+    body.start_twist.angular = 4.0 * Vector3(next(), next(), next());
+    complete(body);
+    scene.bodies.push_back(body);
+  }
+  for (Body& body : scene.bodies) body.material.restitution = pile.restitution;
+  return scene;
+}
+
+/// A finger passes through them meanwhile.
+std::string bits_of(const Pile& pile) {
+  Configuration configuration = testing::unfiltered(ContactModelKind::implicit);
+  configuration.step = 1.001 / pile.rate;
+  Simulation simulation(scene_of(pile), configuration);
+  std::uint64_t all = 0;
+  for (int i = 0; i <= 3 * pile.rate / 2; ++i) {
+    const double t = static_cast<double>(i) / pile.rate;
+    const Vector3 tip(0.3 * t - 0.2, 0.05, 0.16);
+    simulation.advance({testing::at(t), {testing::finger(tip + Vector3(0, 0, 0.05), tip, 0.01)}});
+    all = 31 * all + hash(simulation.state());
+  }
+  char text[64];
+  std::snprintf(text, sizeof text, "%016" PRIx64 ",%016" PRIx64, std::uint64_t(hash(simulation.state())),
+                all);
+  return text;
+}
+
+/// A trial of a simulated operator.
+struct Trial {
+  const char* task;
+  std::uint64_t seed;
+  double noise;
+
+  std::string name() const {
+    return std::string(task) + ",operator " + std::to_string(seed) + ",implicit,0," +
+           std::to_string(noise).substr(0, 3) + ",2";
+  }
+};
+constexpr Trial kTrials[] = {{"cube", 5, 1.0}, {"rail", 1, 0.0}, {"throw", 2, 1.0}};
+
+std::string bits_of(const Trial& trial) {
+  const Task task = trial.task == std::string("cube")
+                        ? testing::task_with("cube")
+                        : load_task("config/tasks/" + std::string(trial.task) + ".yaml");
+  const TrialMeasures measures =
+      testing::play(task, draw_skill("veteran", trial.seed), trial.seed, trial.noise).measures;
+  const double number = measures.arrival_speed.value_or(measures.path_length);
+  std::uint64_t time = 0, last = 0;
+  std::memcpy(&time, &measures.completion_time, sizeof time);
+  std::memcpy(&last, &number, sizeof last);
+  char text[64];
+  std::snprintf(text, sizeof text, "%016" PRIx64 ",%016" PRIx64, time, last);
+  return text;
+}
+
+/// A scene as it is loaded, saved and loaded again.
+struct LoadedScene {
+  std::string file;
+  std::string name() const { return "loaded," + file + ",implicit,0,0,0"; }
+};
+
+std::vector<LoadedScene> loaded_scenes() {
+  std::vector<LoadedScene> scenes{{"test/regression/scenes/of_all_kinds.urdf"}};
+  for (const char* name : {"handrails", "hatch", "panel", "tongs"})
+    scenes.push_back({std::string("config/scenes/") + name + ".urdf"});
+  return scenes;
+}
+
+std::string bits_of(const LoadedScene& loaded) {
+  const test::TemporaryFolder folder;
+  SceneOptions options;
+  options.resolve_package_uri = [](const std::string& uri) { return uri.substr(uri.find('/', 10) + 1); };
+  std::string urdf = loaded.file, texts[2];
+  for (const int round : {0, 1}) {
+    const std::string saved = folder / ("saved" + std::to_string(round) + ".urdf");
+    save_scene(load_scene(urdf, options), saved);
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "")) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (const std::string& file : files) texts[round] += test::text_of(file);
+    urdf = saved;
+  }
+  char text[64];
+  const std::hash<std::string> hash;
+  std::snprintf(text, sizeof text, "%016zx,%016zx", hash(texts[0]), hash(texts[1]));
+  return text;
+}
+
+TEST(Bits, of_replays_piles_trials_and_scenes_are_those_that_were_reviewed) {
   std::map<std::string, std::string> reviewed;
   const std::vector<std::string> lines = test::lines_of(kTable);
   const bool write = std::getenv("MR_HAND_WRITE_BITS") != nullptr;
@@ -104,17 +284,22 @@ TEST(Bits, of_replays_are_those_that_were_reviewed) {
     if (line[0] != '#') reviewed[line.substr(0, name)] = line.substr(name + 1);
   }
   std::string table = "# " + platform() + "\nmotion,scene,model,gravity,rate,hands,state,tables\n", changed;
-  int count = 0;
-  for (const NoisyReplay& run : runs()) {
+  int all = 0, count = 0;
+  const auto compare = [&](const auto& run) {
     const std::string bits = bits_of(run);
     table += run.name() + "," + bits + "\n";
-    if (reviewed[run.name()] == bits) continue;
+    ++all;
+    if (reviewed[run.name()] == bits) return;
     changed += "\n  " + run.name();
     ++count;
-  }
+  };
+  for (const NoisyReplay& run : runs()) compare(run);
+  for (const Pile& pile : kPiles) compare(pile);
+  for (const Trial& trial : kTrials) compare(trial);
+  for (const LoadedScene& scene : loaded_scenes()) compare(scene);
   if (write) std::ofstream(kTable) << table;
   EXPECT_TRUE(write || count == 0)
-      << count << " of " << runs().size() << " replays have other bits than " << kTable << ":" << changed
+      << count << " of " << all << " runs have other bits than " << kTable << ":" << changed
       << "\nIf that is meant, MR_HAND_WRITE_BITS=1 scripts/test regression writes the table anew; say in the "
          "commit which figures moved.";
 }
