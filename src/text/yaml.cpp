@@ -42,7 +42,8 @@ class Guard : public YAML::EventHandler {
  private:
   void enter(const YAML::Mark& mark) {
     if (++depth_ > kDeepestYaml)
-      refuse(mark, "is nested deeper than " + std::to_string(kDeepestYaml) + " levels; allowed: at most that");
+      refuse(mark,
+             "is nested deeper than " + std::to_string(kDeepestYaml) + " levels; allowed: at most that");
   }
   [[noreturn]] void refuse(const YAML::Mark& mark, const std::string& what) const {
     throw YamlError(yaml_place(source_, mark) + ": " + what);

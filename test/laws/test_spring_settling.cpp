@@ -11,9 +11,9 @@
 namespace mrhi {
 namespace {
 
-constexpr double kDepth = 0.002;          // [m]
+constexpr double kDepth = 0.002;             // [m]
 constexpr double kSpringStiffness = 2000.0;  // [N/m]
-constexpr double kStep = 0.001;           // [s]
+constexpr double kStep = 0.001;              // [s]
 constexpr double kStatic = 0.8, kDynamic = 0.6;
 
 /// A fingertip on a body that does not move, drawn along x by `stretch` from where it stuck.
