@@ -85,7 +85,8 @@ class Pictures {
 /// Into a bag. Either of chosen frames, by their numbers from 0: for each its number on /frame
 /// (std_msgs/UInt32), then its markers on /markers (visualization_msgs/MarkerArray), with all that is there.
 /// Or with a rate [Hz] of a whole run: /markers at that rate, as a live node sends them, and for every frame
-/// /rendered_view, and /scene when it changes. Throws UsageError where this was built without ROS.
+/// /scene (when it changes), /rendered_view, /rendered_hands, /tracked_hands, /objects and /contacts. Throws
+/// UsageError where this was built without ROS.
 std::unique_ptr<Pictures> marker_bag(const std::string& file, const std::optional<double>& rate,
                                      const std::set<std::size_t>& frames);
 

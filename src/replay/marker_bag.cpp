@@ -92,8 +92,12 @@ class MarkerBag : public Pictures {
       write_latched(bag_, "/scene", header.stamp,
                     scene_message(simulation.scene(), simulation.configuration(), header));
     }
-    bag_.write("/rendered_view", header.stamp,
-               view_message({simulation.scene(), result, simulation.state()}, header));
+    const Outcome outcome{simulation.scene(), result, simulation.state()};
+    bag_.write("/contacts", header.stamp, contacts_message(outcome, header));
+    bag_.write("/objects", header.stamp, objects_message(outcome, header));
+    bag_.write("/rendered_hands", header.stamp, rendered_message(outcome, header));
+    bag_.write("/tracked_hands", header.stamp, tracked_message(outcome, header));
+    bag_.write("/rendered_view", header.stamp, view_message(outcome, header));
     markers_->note(result, header.stamp);
     const double since = seconds_between(shown_, header.stamp);
     if (since >= 0.0 && since < (1.0 - 1e-6) / *rate_) return;

@@ -50,7 +50,7 @@ class PlaybackTest(unittest.TestCase):
                            rospy.Subscriber("/clock", Clock, cls.take_clock)]
         for _ in range(RUNS):
             cls.record()
-            if cls.is_whole(cls.recorded("/rendered_view")):
+            if cls.is_whole(cls.recorded("/objects")):
                 break
 
     @classmethod
@@ -130,7 +130,7 @@ class PlaybackTest(unittest.TestCase):
 
     def difference(self):
         """What is not as it was recorded; empty: nothing."""
-        recorded_frames, recorded_objects = self.recorded("/hand_frame"), self.recorded("/rendered_view")
+        recorded_frames, recorded_objects = self.recorded("/hand_frame"), self.recorded("/objects")
         both = set(self.frames) & set(self.objects) & set(recorded_frames) & set(recorded_objects)
         for stamp in sorted(both):
             if str(self.frames[stamp].hands) != str(recorded_frames[stamp].hands):
