@@ -424,8 +424,8 @@ def captures():
                 output = os.path.join(scratch, '%d_%d' % (index, number))
                 os.makedirs(output)
                 leads = '1,0.3' if (index, number) == (0, 0) else '1'
-                told = run('real_grasps', '--arctic', folder, '--lead', leads, '--list', '--output', output, *_settings(chosen))
-                results[-1][1][label] = (output, told)
+                listing = run('real_grasps', '--arctic', folder, '--lead', leads, '--list', '--output', output, *_settings(chosen))
+                results[-1][1][label] = (output, listing)
         return captures_figures(results), {}
     finally:
         shutil.rmtree(scratch)
@@ -440,17 +440,17 @@ def captures_figures(results):
     sets = []
     for folder, settings in results:
         windows = rows_of_file(folder, 'windows.csv')
-        output, told = settings['defaults']
+        output, listing = settings['defaults']
         of = {split: row for (lead, split), row in _splits(output).items() if lead == '1'}
         rigid = _splits(output)['', 'all']
         people, things = ({row[key] for row in windows} for key in ('person', 'object'))
-        hinge = re.search(r'windows lead 1 .*hinge within 10 degrees 50 mm (\d+) %', told)
+        hinge = re.search(r'windows lead 1 .*hinge within 10 degrees 50 mm (\d+) %', listing)
         sets.append([SETS.get(windows[0]['set'], os.path.basename(folder.rstrip(os.sep))) + (', with hinges' if hinge else ''),
                      '%d (%s)' % (len(windows), of['all']['captures']), '%d, %d' % (len(people), len(things)),
                      _share(of['all'], 50) + ('; hinge within 10° too: %s %%' % hinge.group(1) if hinge else ''),
                      _share(of['all'], 20), _newtons(of['all']),
                      _share(rigid, 20),
-                     '%s (%s to %s)' % re.search(r'rigid hand.*?([-+]\d+) points \(([-+]\d+) to ([-+]\d+)\)', told).groups()])
+                     '%s (%s to %s)' % re.search(r'rigid hand.*?([-+]\d+) points \(([-+]\d+) to ([-+]\d+)\)', listing).groups()])
     first = results[0][1]
     shares = [(label, _splits(output)['1', 'all']) for label, (output, _) in first.items() if label != 'defaults']
     rigid = [('`rigid`', _splits(first['defaults'][0])['', 'all'])]
@@ -468,9 +468,9 @@ def captures_figures(results):
                                    if split.startswith(kind)) for kind in ('person', 'object')})
 
 
-def _chosen(told):
+def _chosen(listing):
     """Of windows that --list named: those that the defaults were chosen on, and the others."""
-    windows = re.findall(r'^(\w+)_\d+ +(\d+) frames of.*within 50 mm +(\d+) %.*within 20 mm +(\d+) %', told, re.MULTILINE)
+    windows = re.findall(r'^(\w+)_\d+ +(\d+) frames of.*within 50 mm +(\d+) %.*within 20 mm +(\d+) %', listing, re.MULTILINE)
     parts = []
     for chosen, label in ((True, 'the %d that the defaults were chosen on'), (False, 'the other %d')):
         captures = collections.OrderedDict()

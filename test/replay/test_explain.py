@@ -259,11 +259,11 @@ class CommandsTest(Folders):
         output = Attempt(**OPENING).replay(self.folder)
         shutil.rmtree(output)
         done = script('explain', 'pinch.bag', '--scene', 'pinch.urdf', '--set', 'filter/type=none', '--no-pictures', '--output',
-                      'told', cwd=self.folder)
+                      'report', cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn('hand_opened: object', done.stdout)
-        self.assertTrue(done.stdout.endswith('1 lost or released; told/explain.html\n'), done.stdout)
-        self.assertTrue(os.path.isfile(os.path.join(self.folder, 'told', 'explain.json')))
+        self.assertTrue(done.stdout.endswith('1 lost or released; report/explain.html\n'), done.stdout)
+        self.assertTrue(os.path.isfile(os.path.join(self.folder, 'report', 'explain.json')))
 
     def test_replay_calls_the_scripts(self):
         output = Attempt(**OPENING).replay(self.folder, '--explain', '--export', '50')
