@@ -231,6 +231,68 @@ def operators_figures(folder):
             'table_1': _table_1(comparison, pairs, trials)}
 
 
+def people():
+    """What the tests of simulated operators print of six on whom nothing was chosen."""
+    return people_figures(run('test_operators', '--gtest_filter=*OperatorReaches*:*OperatorSwings*:*OperatorHolds*:*OperatorSees*')), {}
+
+
+def people_figures(printed):
+    def found(pattern):
+        return [[float(number) for number in match.groups()] for match in re.finditer(pattern, printed)]
+
+    def span(numbers, form):
+        return form % min(numbers) + ' to ' + form % max(numbers)
+    widest, grips = (sum(found(pattern), []) for pattern in (r'widest at (\d+) %', r', \w+: grip ([\d.]+) N'))
+    swings = sorted(found(r'load ([\d.]+) N, r ([\d.]+), margin (\d+) %'))
+    (aside,), (further,) = (found(r'a leap of 12 cm %s: noticed after ([\d.]+) s, reach longer by ([\d.]+) s' % way)
+                            for way in ('aside', 'further'))
+    return {
+        'widest': span(widest, '%.0f') + ' %', 'grip': span(grips, '%.1f') + ' N',
+        'correlation': 'r = ' + span([r for _, r, _ in swings], '%.2f'),
+        'margin': '%.0f %% at %.1f N of load, %.0f %% at %.0f N' % (swings[0][2], swings[0][0], swings[-1][2], swings[-1][0]),
+        'leap': 'after %.2f s; the reach takes %.2f s longer (12 cm aside), %.2f s (further)' % (aside[0], aside[1], further[1]),
+    }
+
+
+REGISTERED = ('implicit', 'seed', 'virtual_spring', 'soft_pad'), ('flat_cuboid', 'long_cuboid')
+FAMILY = 6  # comparisons: three models, two gravities
+
+
+def registered():
+    """What simulated_study wrote for each seed, in the folder that REGISTERED_STUDY names."""
+    folder = os.environ.get('REGISTERED_STUDY')
+    if not folder:
+        raise MeasurementError('REGISTERED_STUDY is empty; allowed: a folder with what simulated_study wrote for each seed')
+    from study import analysis, session_folder, study_data
+    models, objects = REGISTERED
+    sessions = [session_folder.read_session(path) for path in session_folder.find_sessions([folder])]
+    data = study_data.gather([s._replace(trials=[row for row in s.trials if row['object'] in objects]) for s in sessions])
+    pairs = _rows(analysis.analyse(data._replace(
+        cells=data.cells[data.cells['measure'].isin(['drops', 'completion_time'])])).post_hoc)
+    lines = []
+    for gravity in ('0', '1'):
+        for model in models:
+            some = data.trials[(data.trials['gravity_g'] == float(gravity)) & (data.trials['condition'] == model)]
+            compared = [pair for pair in pairs if (pair['gravity_g'], pair['condition'], {pair['a'], pair['b']}) == (
+                gravity, 'all', {models[0], model})]
+            lines.append([gravity + ' g', '`%s`' % model, '%d' % some['drops'].sum()] + [
+                cell for name in ('drops', 'completion_time') for cell in _ratio_to(model, name, compared)])
+    corrected = 'p × %d' % FAMILY
+    return {'comparison': table(['', '', 'drops', 'ratio of drops', corrected, 'of times', corrected], lines)}, {}
+
+
+def _ratio_to(model, measure, pairs):
+    """Of the first model to this one, and its corrected p."""
+    for pair in pairs:
+        if pair['measure'] == measure:
+            ratio = [float(pair[key]) for key in ('effect', 'low', 'high')]
+            if pair['b'] != model:
+                ratio = [1 / ratio[0], 1 / ratio[2], 1 / ratio[1]]
+            p = min(1.0, FAMILY * float(pair['p']))
+            return '%.2f (%.2f to %.2f)' % tuple(ratio), '%.2g' % p if p >= 1e-4 else '<1e-4'
+    return '', ''
+
+
 GLOVE = os.path.join(PACKAGE, 'config', 'hands', 'eva_glove.yaml')
 GLOVED_HANDS = (('bare', 1.0), ('unpressurised glove (60 % of the strength)', 0.6), ('pressurised glove (20 %)', 0.2))
 
@@ -296,6 +358,66 @@ def afloat():
     return {'tasks': '; '.join(lines)}, {}
 
 
+OVERLAP, SWAY, FRICTION = 0.002, 9.0, 0.8  # of stability_map: how deep fingertips press [m]; acceleration at most [m/s^2]
+OUTCOMES = ('stable', 'let_go', 'ejected', 'diverged')
+
+
+def stability():
+    with tempfile.TemporaryDirectory() as folder:
+        run('stability_map', '--output', folder)
+        cells = rows_of_file(folder, 'stability_map.csv')
+    for cell in cells:
+        cell.update({key: float(value) for key, value in cell.items() if key not in ('model', 'outcome')})
+    models = list(dict.fromkeys(cell['model'] for cell in cells))
+    of = {model: [cell for cell in cells if cell['model'] == model] for model in models}
+    steps = sorted(set(cell['step_s'] for cell in cells))
+    grips = [sum(map(_is_grip, some)) for some in of.values()]
+    return {
+        'models': table(['model', *(outcome.replace('_', ' ') for outcome in OUTCOMES), 'grips held of %d' % grips[0],
+                         'stable at %s ms' % ' / '.join('%.2g' % (1e3 * step) if step < 0.01 else '%.1f' % (1e3 * step)
+                                                        for step in (steps[0], steps[3], steps[-1]))], [
+            ['`%s`' % model, *(_percent(some, lambda cell, outcome=outcome: cell['outcome'] == outcome) for outcome in OUTCOMES),
+             '%d' % sum(_is_grip(cell) and cell['outcome'] == 'stable' for cell in some),
+             ' / '.join('%.0f' % (100 * _stable([cell for cell in some if cell['step_s'] == step])[1])
+                        for step in (steps[0], steps[3], steps[-1])) + ' %'] for model, some in of.items()]),
+        'springs': _bounded(of['seed'], _beyond_springs),
+        'dampers': _bounded(of['virtual_spring'], _beyond_dampers),
+    }, {}
+
+
+def _percent(cells, is_so):
+    share = 100 * sum(map(is_so, cells)) / len(cells)
+    return '%.0f %%' % share if share in (0, 100) else '%.1f %%' % share
+
+
+def _stable(cells):
+    count = sum(cell['outcome'] == 'stable' for cell in cells)
+    return count, count / len(cells)
+
+
+def _bounded(cells, is_beyond):
+    several = [cell for cell in cells if cell['contacts'] >= 2]
+    beyond, within = ([cell for cell in several if is_beyond(cell) == which] for which in (True, False))
+    return '%d of %d cells beyond it are stable, %.0f %% of %d within it' % (
+        _stable(beyond)[0], len(beyond), 100 * _stable(within)[1], len(within))
+
+
+def _is_grip(cell):
+    """Friction carries the cube at twice the sway's acceleration."""
+    pressing = 2 * (cell['contacts'] // 2)
+    return pressing > 0 and FRICTION * pressing * cell['stiffness_n_m'] * OVERLAP >= 2 * cell['mass_kg'] * SWAY
+
+
+def _beyond_springs(cell):
+    return cell['step_s'] > 2 / (cell['contacts'] * cell['stiffness_n_m'] / cell['mass_kg']) ** 0.5
+
+
+def _beyond_dampers(cell):
+    stiffness = cell['contacts'] * cell['stiffness_n_m']
+    damping = cell['contacts'] * 2 * (cell['stiffness_n_m'] * 0.010) ** 0.5
+    return cell['step_s'] ** 2 * stiffness + 2 * cell['step_s'] * damping > 4 * cell['mass_kg']
+
+
 RACE_CHARTS = {'summary': 'speed_accuracy', 'all': 'speed_accuracy_all', 'pinch_swing': 'pinch_swing'}
 
 
@@ -356,6 +478,7 @@ BODIES = collections.OrderedDict([
 PINCHES, GRABS = tuple(BODIES)[:3], tuple(BODIES)[3:]
 PASSES = ('pass_sphere40', 'pass_cube40'), ('pass_sphere60', 'pass_cube60')  # at 0 g, and at 1 g on a column
 IN_PLACE = 10.0  # [mm]
+SEEDS = 4  # of a tracker's noise
 
 
 def recordings():
@@ -368,13 +491,19 @@ def recordings():
         for label, chosen in list(HANDS.items()) + [('`seed`, 100 N/m', {'contact_model': 'seed'})]:
             run('real_grasps', '--output', scratch, *_settings(chosen), folder)
             played[label] = (rows_of_file(scratch, 'real_grasps_events.csv'), rows_of_file(scratch, 'real_grasps.csv'))
-        return recordings_figures(played), {}
+        noisy = collections.OrderedDict()
+        for rate in (30, 60, 120):
+            for noise in (0, 1, 3, 5):
+                run('real_grasps', '--only', ','.join(PINCHES), '--noise', str(noise), '--rate', str(rate), '--seeds', str(SEEDS),
+                    '--output', scratch, folder)
+                noisy[rate, noise] = rows_of_file(scratch, 'real_grasps_events.csv')
+        return recordings_figures(played, noisy), {}
     finally:
         shutil.rmtree(scratch)
 
 
-def recordings_figures(played):
-    """Of {setting: (closings, rows)}."""
+def recordings_figures(played, noisy):
+    """Of {setting: (closings, rows)} and of {(rate, noise): closings}."""
     defaults = played['defaults'][0]
     return {
         'hands': table([''] + ['%s (of %s)' % (label, _row(played['defaults'][1], name)['events']) for name, label in BODIES.items()], [
@@ -385,6 +514,9 @@ def recordings_figures(played):
         'in_place': ' and '.join(_held([row for row in defaults if float(row['early_mm']) < IN_PLACE], names)
                                  for names in (PINCHES, GRABS)),
         'open_hands': ' and '.join(_held(defaults, names) for names in PASSES),
+        'noisy': table(['', 'no noise', '1 mm', '3 mm', '5 mm'], [['%d Hz' % rate] + [
+            '%.0f' % (_count(noisy[rate, noise], PINCHES)[0] / SEEDS)
+            for noise in (0, 1, 3, 5)] for rate in dict.fromkeys(rate for rate, _ in noisy)]),
     }
 
 
@@ -506,7 +638,11 @@ RECIPES = {
     'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
     'gloves': Recipe('1 minute', CORE + ['src/synthetic', 'src/training', 'config/hands'], gloves),
     'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),
-    'recordings': Recipe('1 minute', CORE + ['benchmark/real_grasps'], recordings),
+    'people': Recipe('1 minute', ['src/synthetic', 'test/operators'], people),
+    'recordings': Recipe('2 minutes', CORE + ['benchmark/real_grasps'], recordings),
+    'registered': Recipe('1 minute', ['scripts/study/analysis.py', 'scripts/study/study_data.py'], registered),
+    'stability': Recipe('3 minutes', ['src/collision', 'src/response', 'benchmark/stability_map.cpp', 'test/support/stability_map.h'],
+                        stability),
     'study': Recipe('4 minutes', ['scripts/study/' + name for name in (
         'calibration.py', 'exact.py', 'linear.py', 'mixed_model.py', 'pairwise.py', 'permutation.py')], study),
 }

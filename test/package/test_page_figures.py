@@ -112,12 +112,39 @@ class TestRecordings(unittest.TestCase):
         rows = [{"row": name, "object": "all", "held": "1", "events": "2", "force_p90_N": "16.6"}
                 for name in page_recipes.PINCHES + page_recipes.GRABS]
         played = {label: (events, rows) for label in page_recipes.HANDS}
-        figures = page_recipes.recordings_figures(played)
+        figures = page_recipes.recordings_figures(played, {(30, 0): 4 * events, (30, 1): events, (30, 3): [], (30, 5): []})
         self.assertTrue(figures["hands"].split("\n")[2].startswith("| defaults | 1, 17 N | 1, 17 N |"), figures["hands"])
         # Of a, half is held, of b all: resampled 50 to 100 %; Wilson's interval of 2 of 3 begins at 21 %.
         self.assertIn("| pinch, cubes of 20 to 40 mm | 2 of 3 (21 to 100 %) |", figures["sums"])
         self.assertTrue(figures["in_place"].startswith("2 of 2 (34 to 100 %) and 0 of 1 (0 to 79 %)"), figures["in_place"])
+        self.assertEqual(figures["noisy"].split("\n")[-1], "| 30 Hz | 2 | 0 | 0 | 0 |")  # mean of four seeds
         self.assertEqual(figures["open_hands"], "0 of 1 (0 to 79 %) and 1 of 1 (21 to 100 %)")
+
+
+class TestPeople(unittest.TestCase):
+    def test_figures_of_operators_are_the_ends_of_what_their_tests_print(self):
+        figures = page_recipes.people_figures(
+            "cube, veteran: 0.85 s, widest at 64 %, closed by 72 % before its end\n"
+            "cube, beginner: 1.14 s, widest at 66 %, closed by 65 % before its end\n"
+            "1.8 g, 400 g, 20 cm: grip 12.2 N, p90 14.2 N, load 7.1 N, r 0.98, margin 63 %\n"
+            "0.0 g, 200 g, 20 cm: grip 3.7 N, p90 4.3 N, load 0.5 N, r 0.93, margin 91 %\n"
+            "cube, beginner: grip 3.2 N, p90 3.4 N, 6 of 6 hold it\nflat_cuboid, veteran: grip 2.6 N, p90 2.8 N, 6 of 6 hold it\n"
+            "a leap of 12 cm aside: noticed after 0.10 s, reach longer by 0.12 s\n"
+            "a leap of 12 cm further: noticed after 0.10 s, reach longer by 0.24 s\n")
+        self.assertEqual(figures, {
+            "widest": "64 to 66 %", "grip": "2.6 to 3.2 N", "correlation": "r = 0.93 to 0.98",
+            "margin": "91 % at 0.5 N of load, 63 % at 7 N",
+            "leap": "after 0.10 s; the reach takes 0.12 s longer (12 cm aside), 0.24 s (further)"})
+
+
+class TestStability(unittest.TestCase):
+    def test_bounds_are_those_of_springs_and_dampers(self):
+        cell = {"mass_kg": 1.0, "contacts": 4.0, "stiffness_n_m": 100.0}  # the springs' bound is 0.1 s, the dampers' 0.08198 s
+        for step, springs, dampers in ((0.0819, False, False), (0.0821, False, True), (0.1001, True, True)):
+            self.assertEqual((page_recipes._beyond_springs(dict(cell, step_s=step)),
+                              page_recipes._beyond_dampers(dict(cell, step_s=step))), (springs, dampers), step)
+        self.assertTrue(page_recipes._is_grip(dict(cell, mass_kg=0.035)))  # 0.8 * 4 * 100 * 0.002 = 2 * 0.0356 * 9
+        self.assertFalse(page_recipes._is_grip(dict(cell, mass_kg=0.036)))
 
 
 if __name__ == "__main__":

@@ -28,11 +28,12 @@ class PanelInRviz(unittest.TestCase):
             end = time.monotonic() + LIMIT
             while not listeners("/training/status") and rviz.poll() is None and time.monotonic() < end:
                 time.sleep(0.2)  # between looks at the master
-            self.assertIsNone(rviz.poll(), "rviz ended")
+            self.assertIsNone(rviz.poll(), "rviz ended: %s" % (rviz.poll() is not None and rviz.communicate()[0]))
             self.assertTrue(listeners("/training/status"))
         finally:
-            os.killpg(rviz.pid, signal.SIGTERM)
-            rviz.communicate()
+            if rviz.poll() is None:
+                os.killpg(rviz.pid, signal.SIGTERM)
+                rviz.communicate()
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ NOT_TRIED = (  # what the command begins with, and why it is not run here; beyon
 )
 RUN_AFTER_ALL = (  # what EXCEPTED says of other places
     "rosrun mr_hand_interaction (analyse_study|ask_ratings|stability_map --quick|real_grasps --list|filters --output \\. )",
-    "make -C build/catkin (stability_map|real_grasps|latency|filters)", "benchmark/count_stability_map.py stability/",
+    "make -C build/catkin (stability_map|real_grasps|latency|filters)",
     "roslaunch benchmark/latency", "apt-get install")
 IN_THE_PACKAGE = ("make -C build/catkin", "roslaunch benchmark/")
 ANSWERS = "yes\n31\nfemale\nright\nnone\n" + "4\n" * 20  # to whatever asks
