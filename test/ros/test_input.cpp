@@ -239,5 +239,18 @@ TEST_F(NetworkThread, an_exception_in_a_callback_ends_the_spin_with_it_and_no_ca
   });
 }
 
+struct Broken : ros::CallbackInterface {
+  CallResult call() override { throw std::runtime_error("in the main thread"); }
+};
+
+TEST_F(NetworkThread, an_exception_in_the_main_thread_ends_the_spin_and_no_callback_follows) {
+  passes([] {
+    const NumbersNode node([&](int number) {
+      if (number == kNumbers) ros::getGlobalCallbackQueue()->addCallback(boost::make_shared<Broken>());
+    });
+    return node.error() == "in the main thread" && !node.was_late();
+  });
+}
+
 }  // namespace
 }  // namespace mrhi
