@@ -23,8 +23,8 @@ parameters of both. The parameters of hand_tracking_node are in ~hand_tracking. 
 /// hand_tracking_node and interaction_node in one process and one thread: a call passes each frame on.
 /// Parameters of tracking are in ~hand_tracking.
 int main(int argc, char** argv) {
-  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
-    mrhi::NetworkThreadQueue queue;
+  mrhi::NetworkThreadQueue queue;  // before the first node handle
+  const auto body = [&queue](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
     const ros::NodeHandle here = queue.handle(node), private_here = queue.handle(private_node);
     mrhi::InteractionServer server(here, private_here, mrhi::read_server_parameters(private_node));
     mrhi::HandTracking tracking(here, ros::NodeHandle(private_here, "hand_tracking"));

@@ -26,8 +26,8 @@ Subscribes to hand trackers, and publishes their hands in the world frame on han
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto body = [](const auto& node, const auto& private_node) {
-    mrhi::NetworkThreadQueue queue;
+  mrhi::NetworkThreadQueue queue;  // before the first node handle
+  const auto body = [&queue](const auto& node, const auto& private_node) {
     const mrhi::HandTracking tracking(queue.handle(node), queue.handle(private_node));
     queue.spin();
   };

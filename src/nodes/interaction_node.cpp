@@ -26,8 +26,8 @@ and all parameters of config/default.yaml, such as _contact_model:=seed.
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto body = [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
-    mrhi::NetworkThreadQueue queue;
+  mrhi::NetworkThreadQueue queue;  // before the first node handle
+  const auto body = [&queue](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
     ros::NodeHandle here = queue.handle(node);
     mrhi::InteractionServer server(here, queue.handle(private_node),
                                    mrhi::read_server_parameters(private_node));

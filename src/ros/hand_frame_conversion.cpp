@@ -90,17 +90,17 @@ mr_hand_interaction::Hand to_message(const Hand& hand, const Touching& touching)
   message.palm = to_message(hand.palm);
   message.palm_width = static_cast<float>(hand.palm_width);
   message.wrist = to_message(hand.wrist);
+  message.phalanges.reserve(kPhalanges);
   for (int i = 0; i < kPhalanges; ++i) {
     if (!hand.has(i)) continue;
     const Capsule& capsule = hand.capsules[static_cast<std::size_t>(i)];
-    mr_hand_interaction::Phalanx phalanx;
+    mr_hand_interaction::Phalanx& phalanx = message.phalanges.emplace_back();
     phalanx.finger = static_cast<std::uint8_t>(finger_of(i));
     phalanx.bone = static_cast<std::uint8_t>(bone_of(i));
     phalanx.start = to_message(capsule.start);
     phalanx.end = to_message(capsule.end);
     phalanx.radius = static_cast<float>(capsule.radius);
     phalanx.touching = touching[static_cast<std::size_t>(i)];
-    message.phalanges.push_back(phalanx);
   }
   return message;
 }

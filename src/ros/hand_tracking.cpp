@@ -4,7 +4,6 @@
 #include <ros/callback_queue_interface.h>
 #include <ros/ros.h>
 #include <tf2_msgs/TFMessage.h>
-#include <topic_tools/shape_shifter.h>
 
 #include <boost/make_shared.hpp>
 #include <deque>
@@ -19,6 +18,39 @@
 #include "mr_hand_interaction/stamp_check.h"
 #include "node.h"
 #include "tracker_reader.h"
+
+namespace mrhi {
+
+/// A message of any type, as its bytes. A topic_tools::ShapeShifter has the text of the type's definition
+/// too, and copies it with each message.
+struct AnyMessage {
+  std::vector<std::uint8_t> bytes;
+};
+
+}  // namespace mrhi
+
+namespace ros {
+namespace message_traits {
+template <>
+struct MD5Sum<mrhi::AnyMessage> {
+  static const char* value() { return "*"; }
+};
+template <>
+struct DataType<mrhi::AnyMessage> {
+  static const char* value() { return "*"; }
+};
+}  // namespace message_traits
+namespace serialization {
+template <>
+struct Serializer<mrhi::AnyMessage> {
+  template <typename Stream>
+  static void read(Stream& stream, mrhi::AnyMessage& message) {
+    const std::uint8_t* const begin = stream.getData();
+    message.bytes.assign(begin, begin + stream.getLength());
+  }
+};
+}  // namespace serialization
+}  // namespace ros
 
 namespace mrhi {
 namespace {
@@ -137,7 +169,7 @@ struct HandTracking::Impl {
     });
   }
 
-  using Event = ros::MessageEvent<const topic_tools::ShapeShifter>;
+  using Event = ros::MessageEvent<AnyMessage>;
   /// A topic that may carry any tracker's message.
   struct Source {
     std::string topic;  ///< before remapping
@@ -147,7 +179,7 @@ struct HandTracking::Impl {
 
   void subscribe(Source& source) {
     source.seen = false;
-    source.subscriber = node_.subscribe<topic_tools::ShapeShifter>(
+    source.subscriber = node_.subscribe<AnyMessage>(
         source.topic, kQueue,
         boost::function<void(const Event&)>([this, &source](const Event& event) { take(source, event); }),
         nullptr, ros::TransportHints().tcpNoDelay());
@@ -167,8 +199,14 @@ struct HandTracking::Impl {
 
   void take(Source& source, const Event& event) {
     source.seen = true;
-    auto arrived = TrackerReader::message_of(source.topic, event.getPublisherName(), *event.getConstMessage(),
-                                             event.getReceiptTime());
+    ros::M_string& connection = event.getConnectionHeader();
+    const std::string& publisher = connection["callerid"];
+    TrackerReader::Message arrived{source.topic,
+                                   publisher,
+                                   connection["type"],
+                                   connection["md5sum"],
+                                   std::move(event.getMessage()->bytes),
+                                   from_ros_time(event.getReceiptTime())};
     std::optional<std::uint32_t> sequence;
     SourceFrame frame;
     try {
@@ -183,8 +221,7 @@ struct HandTracking::Impl {
       frame.reason = kNoTransform;
       frame.detail = error.what();
     }
-    if (sequence)
-      statistics_.lost(sequences_.missing(event.getPublisherName() + " " + source.topic, *sequence));
+    if (sequence) statistics_.lost(sequences_.missing(publisher + " " + source.topic, *sequence));
     for (const auto& [kind, what] : frame.corrected) statistics_.corrected(kind, what);
     for (const std::string& defect : frame.left_out) statistics_.rejected(JointsInput::kUnusable, defect);
     if (!frame.reason.empty()) statistics_.rejected(frame.reason, frame.detail);

@@ -149,7 +149,7 @@ class SequenceWatch {
   /// Number missing before this one. A number that goes back or far ahead restarts the count.
   std::uint64_t missing(const std::string& publisher, std::uint32_t sequence) {
     constexpr std::uint32_t kFar = 1'000'000;
-    const auto [known, is_new] = last_.emplace(publisher, sequence);
+    const auto [known, is_new] = last_.try_emplace(publisher, sequence);
     const std::uint32_t step = sequence - known->second;
     known->second = sequence;
     return is_new || step == 0 || step > kFar ? 0 : step - 1;

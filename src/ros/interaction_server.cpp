@@ -240,15 +240,20 @@ struct InteractionServer::Impl {
     const Nanoseconds stamp = clock_.stamp(now);
     const bool running = !clock_.paused() && live_.simulation().state().started;
     const Nanoseconds until = clock_.to_simulation(stamp) - kSlack;
+    const ros::WallDuration since = ros::SteadyTime::now() - results_.shown();
+    ros::WallDuration next = kIdlePeriod;
     if (running && live_.simulation().advance_without_hands(until)) {
       log_.without_hands(until);
       place_dragged();
       results_.publish(live_.simulation().result());
-    } else if (ros::SteadyTime::now() - results_.shown() > kIdlePeriod * 0.5) {
+    } else if (since > kIdlePeriod * 0.5) {
       place_dragged();
       results_.publish_scene(live_.simulation().result(), to_ros_time(stamp));
+    } else if (!placing_.is_on()) {  // frames come: look again when the next ones would be missing
+      next = ros::WallDuration(to_seconds(kSlack)) - since;
     }
     placing_.follow(live_.simulation());
+    if (next != std::exchange(idle_period_, next)) idle_timer_.setPeriod(next);
   }
 
   std::string reset() {
@@ -365,6 +370,7 @@ struct InteractionServer::Impl {
   SequenceWatch sequences_;
   ros::Subscriber hands_;
   std::vector<ros::ServiceServer> services_;
+  ros::WallDuration idle_period_ = kIdlePeriod;
   ros::SteadyTimer idle_timer_;
   BetweenFrames between_frames_;  ///< last member, so that no call runs during the destruction of the others
 };

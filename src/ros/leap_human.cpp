@@ -34,16 +34,18 @@ std::optional<float> known(float length) {
   return length == 0.0f ? std::nullopt : std::make_optional(length);
 }
 
-/// Elements of a list by their type number, 0..Size-1, each at most once.
+/// Elements of a list by their type number, 0..Size-1, each at most once. `package` and `name` are for
+/// errors.
 template <std::size_t Size, class List>
-std::array<const typename List::value_type*, Size> by_type(const List& list, const std::string& name) {
-  if (list.size() > Size)
-    wrong_count(name + " has " + std::to_string(list.size()) + " entries; at most " + std::to_string(Size));
+std::array<const typename List::value_type*, Size> by_type(const List& list, const char* package,
+                                                           const char* name) {
+  const auto refuse = [&](const std::string& what) { wrong_count(package + (name + (" has " + what))); };
+  if (list.size() > Size) refuse(std::to_string(list.size()) + " entries; at most " + std::to_string(Size));
   std::array<const typename List::value_type*, Size> found{};
   for (const auto& element : list) {
-    const auto has_type = [&] { return name + " has type " + std::to_string(element.type); };
-    if (element.type >= Size) wrong_count(has_type() + "; 0 to " + std::to_string(Size - 1) + " are known");
-    if (found[element.type] != nullptr) wrong_count(has_type() + " twice");
+    const auto type = [&] { return "type " + std::to_string(element.type); };
+    if (element.type >= Size) refuse(type() + "; 0 to " + std::to_string(Size - 1) + " are known");
+    if (found[element.type] != nullptr) refuse(type() + " twice");
     found[element.type] = &element;
   }
   return found;
@@ -82,12 +84,12 @@ float width_of(const Part& part) {
 
 /// Joints of the fingers as in both drivers' messages. Points at zero stay so as placeholders.
 template <class Hand>
-void read_fingers(const Hand& message, const std::string& type, HandJoints& hand) {
-  const auto fingers = by_type<kFingers>(message.finger_list, type + "/Hand.finger_list");
+void read_fingers(const Hand& message, const char* package, HandJoints& hand) {
+  const auto fingers = by_type<kFingers>(message.finger_list, package, "/Hand.finger_list");
   for (std::size_t f = 0; f < kFingers; ++f) {
     if (fingers[f] == nullptr) continue;
     hand.finger_width[f] = known(width_of(*fingers[f]));
-    const auto bones = by_type<kBonesPerFinger>(fingers[f]->bone_list, type + "/Finger.bone_list");
+    const auto bones = by_type<kBonesPerFinger>(fingers[f]->bone_list, package, "/Finger.bone_list");
     for (std::size_t b = 0; b < kBonesPerFinger; ++b) {
       if (bones[b] == nullptr) continue;
       // A bone starts where the previous one ends; a value that is not finite must not be overwritten.
@@ -123,7 +125,7 @@ LeapFrame frame_with(const Header& header) {
 
 template <class Human>
 LeapFrame frame_of(std::vector<std::uint8_t>& bytes) {
-  const auto human = deserialised<Human>("leap_motion/Human", bytes);
+  const Human& human = deserialised<Human>("leap_motion/Human", bytes);
   LeapFrame frame = frame_with(human.header);
   const auto take = [&frame](const auto& hand, Side side) {
     HandJoints joints = joints_of(hand, side);
@@ -149,20 +151,17 @@ const std::map<std::string, Read>& versions() {
   return all;
 }
 
-constexpr const char* kController = "leap_motion_controller";
-
 }  // namespace
 
 /// The driver sets no confidence.
 LeapFrame read_leap_controller(std::vector<std::uint8_t> bytes) {
-  const auto message =
-      deserialised<msg::LeapControllerHand_<Bounded>>(std::string(kController) + "/Hand", bytes);
+  const auto& message = deserialised<msg::LeapControllerHand_<Bounded>>("leap_motion_controller/Hand", bytes);
   HandJoints hand;
   hand.id = static_cast<std::uint32_t>(message.lmc_hand_id);
   hand.grab_strength = message.grab_strength;
   hand.pinch_strength = message.pinch_strength;
   hand.palm_centre = known(position(message.palm_center));
-  read_fingers(message, kController, hand);
+  read_fingers(message, "leap_motion_controller", hand);
   LeapFrame frame = frame_with(message.header);
   frame.joints.hands.push_back(std::move(hand));
   return frame;

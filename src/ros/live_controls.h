@@ -116,6 +116,8 @@ class Placing {
     drags_.clear();
   }
 
+  bool is_on() const { return server_ != nullptr; }
+
   /// Call when the set of bodies has changed.
   void renew(const Simulation& simulation) {
     if (!server_) return;

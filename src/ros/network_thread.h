@@ -5,6 +5,7 @@
 #include <ros/ros.h>
 #include <boost/make_shared.hpp>
 
+#include <atomic>
 #include <cstdint>
 #include <exception>
 #include <utility>
@@ -14,8 +15,14 @@ namespace mrhi {
 /// A callback queue that roscpp's network thread calls, which receives and sends all messages: a frame goes
 /// from its arrival to the departure of its results without waking another thread. Callbacks run one at a
 /// time, as under ros::spin(). They must not call services, whose responses arrive in the same thread.
+///
+/// In each cycle, roscpp calls its listeners in their order of registration. A queue made before the first
+/// ros::NodeHandle is called before what was published is sent, and saves the frame a cycle.
 class NetworkThreadQueue : public ros::CallbackQueue {
  public:
+  NetworkThreadQueue() : listener_(ros::PollManager::instance()->addPollThreadListener([this] { call(); })) {}
+  ~NetworkThreadQueue() { stop(); }
+
   /// A handle whose callbacks this queue calls.
   ros::NodeHandle handle(const ros::NodeHandle& node) {
     ros::NodeHandle here(node);
@@ -29,26 +36,18 @@ class NetworkThreadQueue : public ros::CallbackQueue {
   }
 
   /// Calls callbacks until the node ends, and in this thread those of the global queue. Rethrows their
-  /// exceptions.
+  /// exceptions. Afterwards no callback runs.
   void spin() {
-    const Listener listener([this] { call(); });
+    const struct Stop {
+      NetworkThreadQueue& queue;
+      ~Stop() { queue.stop(); }
+    } at_end{*this};
+    spinning_ = true;
+    ros::PollManager::instance()->getPollSet().signal();
     ros::spin();
   }
 
  private:
-  /// Called in each cycle of the network thread. After its destruction it is not called, nor running.
-  class Listener {
-   public:
-    explicit Listener(const ros::VoidFunc& call)
-        : connection_(ros::PollManager::instance()->addPollThreadListener(call)) {}
-    ~Listener() { ros::PollManager::instance()->removePollThreadListener(connection_); }
-    Listener(const Listener&) = delete;
-    Listener& operator=(const Listener&) = delete;
-
-   private:
-    boost::signals2::connection connection_;
-  };
-
   /// Throws an exception of the network thread in the thread of ros::spin().
   class Failure : public ros::CallbackInterface {
    public:
@@ -59,8 +58,11 @@ class NetworkThreadQueue : public ros::CallbackQueue {
     std::exception_ptr exception_;
   };
 
+  /// Waits for the network thread to leave call(), which is not called again.
+  void stop() { ros::PollManager::instance()->removePollThreadListener(listener_); }
+
   void call() {
-    if (isEmpty()) return;  // much cheaper than callAvailable()
+    if (!spinning_ || isEmpty()) return;  // much cheaper than callAvailable()
     try {
       callAvailable();
     } catch (...) {
@@ -68,6 +70,9 @@ class NetworkThreadQueue : public ros::CallbackQueue {
       ros::getGlobalCallbackQueue()->addCallback(boost::make_shared<Failure>(std::current_exception()));
     }
   }
+
+  std::atomic<bool> spinning_{false};
+  boost::signals2::connection listener_;
 };
 
 }  // namespace mrhi

@@ -152,10 +152,11 @@ mr_hand_interaction::ObjectStateArray objects_message(const Outcome& outcome,
   const auto& [scene, result, state] = outcome;
   mr_hand_interaction::ObjectStateArray message;
   message.header = header;
+  message.objects.reserve(scene.bodies.size());
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (body.fixed) continue;
-    mr_hand_interaction::ObjectState object;
+    mr_hand_interaction::ObjectState& object = message.objects.emplace_back();
     object.name = body.name;
     object.pose = to_message(state.bodies[i].pose);
     object.twist = to_message(twist_of(body, state.bodies[i]));
@@ -165,7 +166,6 @@ mr_hand_interaction::ObjectStateArray objects_message(const Outcome& outcome,
     const std::optional<Vector3> assist = assist_force(i, result);
     object.assisted = assist.has_value();
     object.assist_force = vector_message(assist.value_or(Vector3::Zero()));
-    message.objects.push_back(object);
   }
   return message;
 }
@@ -174,8 +174,9 @@ mr_hand_interaction::ContactArray contacts_message(const Outcome& outcome, const
   const auto& [scene, result, state] = outcome;
   mr_hand_interaction::ContactArray message;
   message.header = header;
+  message.contacts.reserve(result.contacts.size());
   for (const Contact& contact : result.contacts) {
-    mr_hand_interaction::Contact entry;
+    mr_hand_interaction::Contact& entry = message.contacts.emplace_back();
     entry.object = scene.bodies[contact.key.body].name;
     entry.hand_id = hand_id(contact, state);
     entry.finger = static_cast<std::uint8_t>(finger_of(contact.key.capsule));
@@ -190,7 +191,6 @@ mr_hand_interaction::ContactArray contacts_message(const Outcome& outcome, const
     entry.normal_force = use.normal;
     entry.tangential_force = use.tangential;
     entry.friction_limit = use.limit;
-    message.contacts.push_back(entry);
   }
   return message;
 }
@@ -222,15 +222,14 @@ mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const Fr
 std::vector<geometry_msgs::TransformStamped> object_transforms(const Scene& scene,
                                                                const SimulationState& state,
                                                                const std_msgs::Header& header) {
-  std::vector<geometry_msgs::TransformStamped> transforms;
+  std::vector<geometry_msgs::TransformStamped> transforms(scene.bodies.size());
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Pose link = state.bodies[i].pose * scene.bodies[i].link_in_body;
-    geometry_msgs::TransformStamped transform;
+    geometry_msgs::TransformStamped& transform = transforms[i];
     transform.header = header;
     transform.child_frame_id = scene.bodies[i].name;
     transform.transform.translation = vector_message(link.position);
     transform.transform.rotation = to_message(link).orientation;
-    transforms.push_back(transform);
   }
   return transforms;
 }

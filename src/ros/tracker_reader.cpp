@@ -62,7 +62,7 @@ std::vector<std::string> hands_topics(const std::string& end) {
 struct Tracker {
   std::string type;
   std::vector<std::string> md5s, topics;  ///< its versions, and its standard topics
-  /// Its contents: joints in an order, or hands by names of fingers and bones.
+  /// Its contents: joints in an order, or hands by names of fingers and bones. Consumes the bytes.
   std::function<std::variant<TrackedPoints, LeapFrame>(const std::string& md5,
                                                        std::vector<std::uint8_t>& bytes)>
       read;
@@ -75,7 +75,7 @@ Tracker tracker_of_points(const std::string& type, const std::string& topics) {
           {ros::message_traits::md5sum<Message<std::allocator<void>>>()},
           hands_topics(topics),
           [type](const std::string&, std::vector<std::uint8_t>& bytes) {
-            return tracked_points(deserialised<Message<Bounded>>(type, bytes));
+            return tracked_points(deserialised<Message<Bounded>>(type.c_str(), bytes));
           }};
 }
 
@@ -84,11 +84,15 @@ const std::vector<Tracker>& trackers() {
       {"leap_motion_controller/Hand",
        {ros::message_traits::md5sum<mr_hand_interaction::LeapControllerHand>()},
        {"/leapmotion/hands/left", "/leapmotion/hands/right"},
-       [](const std::string&, std::vector<std::uint8_t>& bytes) { return read_leap_controller(bytes); }},
+       [](const std::string&, std::vector<std::uint8_t>& bytes) {
+         return read_leap_controller(std::move(bytes));
+       }},
       {"leap_motion/Human",
        leap_versions(),
        {"/leap_motion/leap_device"},
-       [](const std::string& md5, std::vector<std::uint8_t>& bytes) { return read_leap(md5, bytes); },
+       [](const std::string& md5, std::vector<std::uint8_t>& bytes) {
+         return read_leap(md5, std::move(bytes));
+       },
        true},
       tracker_of_points<sensor_msgs::PointCloud_>("sensor_msgs/PointCloud", "point_cloud"),
       tracker_of_points<geometry_msgs::PoseArray_>("geometry_msgs/PoseArray", "pose_array")};
@@ -226,16 +230,18 @@ SourceFrame TrackerReader::read(Message message, const Place& place, std::option
     const TrackedPoints* const points = std::get_if<TrackedPoints>(&tracked);
     const std::string frame_id = points ? points->header.frame_id : std::get<LeapFrame>(tracked).frame_id;
     if (sequence != nullptr) *sequence = points ? points->header.seq : std::get<LeapFrame>(tracked).sequence;
-    const std::optional<Side> of_topic = side_of_topic(message.topic);
-    const Side side = (of_topic ? of_topic : side_of_frame(frame_id)).value_or(side_);
+    const auto side = [&] {
+      const std::optional<Side> of_topic = side_of_topic(message.topic);
+      return (of_topic ? of_topic : side_of_frame(frame_id)).value_or(side_);
+    };
     TrackerFrame frame;
     if (points) {
-      frame = frame_of(*points, side, stream_of(message), result);
+      frame = frame_of(*points, side(), stream_of(message), result);
     } else {
       frame.joints = std::get<LeapFrame>(tracked).joints;
       if (!tracker.tells_sides) {
-        frame.side = side;
-        for (HandJoints& hand : frame.joints.hands) hand.side = side;
+        frame.side = side();
+        for (HandJoints& hand : frame.joints.hands) hand.side = *frame.side;
       }
     }
     frame.stream = stream_of(message);

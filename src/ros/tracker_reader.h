@@ -48,14 +48,15 @@ struct BoundedAllocator : std::allocator<T> {
 };
 using Bounded = BoundedAllocator<char>;
 
-/// Deserialises a message with this allocator; `type` is its name in errors. Throws DecodeError.
+/// Deserialises a message with this allocator; `type` is its name in errors. Throws DecodeError. The thread's
+/// next message of this type replaces it, in the same memory: most lists are as long as the last time.
 template <class Message>
-Message deserialised(const std::string& type, std::vector<std::uint8_t>& bytes) {
+const Message& deserialised(const char* type, std::vector<std::uint8_t>& bytes) {
   const auto refuse = [&](const std::string& what) {
     throw DecodeError(DecodeError::Kind::malformed,
-                      type + " of " + std::to_string(bytes.size()) + " bytes " + what);
+                      type + (" of " + std::to_string(bytes.size())) + " bytes " + what);
   };
-  Message message;
+  thread_local Message message;
   ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
   try {
     if (bytes.empty()) ros::serialization::throwStreamOverrun();  // roscpp would add to a null pointer
@@ -181,7 +182,7 @@ class TrackerReader {
     std::vector<std::uint8_t> bytes;
     Nanoseconds receipt = 0;
   };
-  /// From a topic_tools::ShapeShifter or a rosbag::MessageInstance.
+  /// From a rosbag::MessageInstance.
   template <class Serialised>
   static Message message_of(const std::string& topic, const std::string& publisher, const Serialised& message,
                             const ros::Time& receipt) {

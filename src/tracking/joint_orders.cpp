@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "../text/text.h"
@@ -50,6 +50,7 @@ struct Measured {
 /// Links with known ends, without those of zero length: a tracker may repeat a joint for a metacarpal.
 std::vector<Measured> measured(const HandJoints& hand) {
   std::vector<Measured> found;
+  found.reserve(kLinks.size());
   for (const Link& link : kLinks) {
     const Joint &from = joint(hand, link.from), &to = joint(hand, link.to);
     if (!from || !to) continue;
@@ -82,13 +83,23 @@ std::size_t known_joints(const HandJoints& hand) {
   return known;
 }
 
+std::optional<double> relative_size(const std::vector<Measured>& bones) {
+  std::vector<double> ratios;
+  ratios.reserve(bones.size());
+  for (const Measured& bone : bones)
+    if (std::isfinite(bone.length)) ratios.push_back(bone.length / bone.link->adult);
+  if (ratios.size() < kMinKnownBones) return std::nullopt;
+  return median(std::move(ratios));
+}
+
 /// The joint at the end of most overlong links; of several, the one farthest from the hand's median point.
 std::optional<std::size_t> worst_joint(const HandJoints& hand) {
-  const auto fit = proportions(hand);
+  const std::vector<Measured> bones = measured(hand);
+  const auto size = relative_size(bones);
   std::array<int, kHandJoints> faults{};
   int max_faults = 0;
-  for (const Measured& bone : measured(hand)) {
-    const double longest = fit ? kMaxBoneRatio * fit->size * bone.link->adult : kMaxBoneLength;
+  for (const Measured& bone : bones) {
+    const double longest = size ? kMaxBoneRatio * *size * bone.link->adult : kMaxBoneLength;
     if (!(bone.length > longest)) continue;
     for (const std::size_t end : {bone.link->from, bone.link->to})
       max_faults = std::max(max_faults, ++faults[end]);
@@ -190,23 +201,25 @@ bool is_radius(float radius) {
   return radius > 0.0f;
 }
 
+/// Mean of |ln(ratio / size)|, each at most kMaxMisfit.
 std::optional<double> misfit(HandJoints hand) {
   drop_placeholders(hand);
-  const auto fit = proportions(hand);
-  return fit ? std::make_optional(fit->misfit) : std::nullopt;
+  const std::vector<Measured> bones = measured(hand);
+  const auto size = relative_size(bones);
+  if (!size) return std::nullopt;
+  double sum = 0.0, known = 0.0;
+  for (const Measured& bone : bones) {
+    if (!std::isfinite(bone.length)) continue;
+    sum += std::min(std::abs(std::log(bone.length / bone.link->adult) - std::log(*size)), kMaxMisfit);
+    known += 1.0;
+  }
+  return sum / known;
 }
 
 }  // namespace
 
-std::optional<Proportions> proportions(const HandJoints& hand) {
-  std::vector<double> ratios;
-  for (const Measured& bone : measured(hand))
-    if (std::isfinite(bone.length)) ratios.push_back(std::log(bone.length / bone.link->adult));
-  if (ratios.size() < kMinKnownBones) return std::nullopt;
-  const double common = median(ratios);
-  double misfit = 0.0;
-  for (const double ratio : ratios) misfit += std::min(std::abs(ratio - common), kMaxMisfit);
-  return Proportions{std::exp(common), misfit / static_cast<double>(ratios.size())};
+std::optional<double> relative_size(const HandJoints& hand) {
+  return relative_size(measured(hand));
 }
 
 std::size_t drop_placeholders(HandJoints& hand, bool wrist_is_origin) {

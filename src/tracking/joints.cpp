@@ -189,11 +189,11 @@ const Unit& likely_unit(double size) {
 }
 
 std::string size_defect(const HandJoints& hand) {
-  const auto fit = proportions(hand);
-  if (!fit || (fit->size > kSmallestHand && fit->size < kLargestHand)) return "";
-  std::string text = "its bones are " + text::number(fit->size) + " times as long as an adult's";
-  if (fit->size > 1.0) {
-    const Unit& unit = likely_unit(fit->size);
+  const auto size = relative_size(hand);
+  if (!size || (*size > kSmallestHand && *size < kLargestHand)) return "";
+  std::string text = "its bones are " + text::number(*size) + " times as long as an adult's";
+  if (*size > 1.0) {
+    const Unit& unit = likely_unit(*size);
     const std::string factor = text::number(unit.metres);
     text += std::string(", as of ") + unit.name + "; allowed: metres; scale:=" + factor +
             " (replay: --hand-scale " + factor + ") converts";

@@ -22,16 +22,9 @@ auto& joint(Joints& hand, std::size_t i) {
   return i == 0 ? hand.wrist : hand.joints[(i - 1) / 5][(i - 1) % 5];
 }
 
-/// A hand beside the adult's of hand_anatomy.h.
-struct Proportions {
-  double size;    ///< common factor of its bones to the adult's: the median of their ratios
-  double misfit;  ///< mean of |ln(ratio / size)|, each up to 1.4: below 0.1 of a hand, 0.3 and more in a
-                  ///< wrong order
-};
-
-/// Proportions from all known bones and distances from the wrist to the knuckles. Nothing for fewer than
-/// kMinKnownBones of these.
-std::optional<Proportions> proportions(const HandJoints& hand);
+/// Size of a hand as a factor on the adult's of hand_anatomy.h: the median ratio of all known bones, and of
+/// the distances from the wrist to the knuckles. Nothing for fewer than kMinKnownBones of these.
+std::optional<double> relative_size(const HandJoints& hand);
 constexpr std::size_t kMinKnownBones = 8;
 
 /// Drops joints that are at a placeholder: the origin, and any point at which joints of two fingers are
@@ -77,7 +70,9 @@ class OrderRecognition {
   const JointOrder& order_of(std::size_t size, const Vector3* points, bool& changed);
 
  private:
-  static constexpr double kMargin = 0.08;     // of Proportions::misfit
+  // A misfit is the mean of |ln(ratio / size)| over a hand's bones: below 0.1 of a hand, 0.3 and more in a
+  // wrong order.
+  static constexpr double kMargin = 0.08;
   static constexpr double kMaxMisfit = 0.45;  // of a hand in the best order
   static constexpr double kNewWeight = 0.2;   // of a hand in the running means
 

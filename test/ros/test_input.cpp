@@ -1,7 +1,18 @@
 #include <gtest/gtest.h>
+#include <std_msgs/ColorRGBA.h>
+#include <xmlrpcpp/XmlRpc.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <functional>
+#include <list>
+#include <stdexcept>
+#include <string>
+#include <thread>
 
 #include "ros/input_log.h"
 #include "ros/input_statistics.h"
+#include "ros/network_thread.h"
 
 namespace mrhi {
 namespace {
@@ -108,6 +119,137 @@ TEST(LostFrames, are_told_once_as_a_warning_and_counted_for_good) {
   EXPECT_EQ(second.level, DiagnosticStatus::OK);
   EXPECT_EQ(value_of(second, "frames lost by queue"), "3");
   EXPECT_EQ(value_of(second, "frames late by more than 50 ms"), "1");
+}
+
+/// A ROS master that agrees to everything and knows of nobody, in a thread.
+class StubMaster {
+ public:
+  StubMaster() {
+    for (const char* method :
+         {"registerService", "unregisterService", "registerPublisher", "unregisterPublisher",
+          "registerSubscriber", "unregisterSubscriber", "getParam"})
+      methods_.emplace_back(method, &server_);
+    server_.bindAndListen(0);
+    setenv("ROS_MASTER_URI", ("http://127.0.0.1:" + std::to_string(server_.get_port())).c_str(), 1);
+    setenv("ROS_IP", "127.0.0.1", 1);
+    thread_ = std::thread([this] {
+      while (!ended_) server_.work(0.05);
+    });
+  }
+  ~StubMaster() {
+    ended_ = true;
+    thread_.join();
+  }
+
+ private:
+  struct Method : XmlRpc::XmlRpcServerMethod {
+    Method(const std::string& name, XmlRpc::XmlRpcServer* server)
+        : XmlRpc::XmlRpcServerMethod(name, server) {}
+    void execute(XmlRpc::XmlRpcValue& /*request*/, XmlRpc::XmlRpcValue& response) override {
+      response[0] = name() == "getParam" ? -1 : 1;
+      response[1] = name();
+      response[2].setSize(0);
+    }
+  };
+  XmlRpc::XmlRpcServer server_;
+  std::list<Method> methods_;
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
+};
+
+/// A process with a node whose queue is called by the network thread. A thread sends the numbers from 1 on to
+/// `take` until the queue has ended and a thousand more are sent.
+class NumbersNode {
+ public:
+  using Number = std_msgs::ColorRGBA;  // r
+  explicit NumbersNode(const std::function<void(int number)>& take) {
+    const StubMaster master;
+    ros::init(ros::M_string{}, "numbers", ros::init_options::NoRosout | ros::init_options::NoSigintHandler);
+    NetworkThreadQueue queue;
+    ros::NodeHandle node;
+    ros::NodeHandle here = queue.handle(node);
+    const ros::Publisher publisher = node.advertise<Number>("numbers", 0);
+    const auto handler = [&](const Number::ConstPtr& message) {
+      late_ = late_ || ended_;
+      take(static_cast<int>(message->r));
+    };
+    const ros::Subscriber subscriber =
+        here.subscribe<Number>("numbers", 0, boost::function<void(const Number::ConstPtr&)>(handler));
+    std::thread sender([&] {
+      for (int sent = 0, after = 0; after < 1000; after += ended_) {
+        const auto message = boost::make_shared<Number>();
+        message->r = static_cast<float>(++sent);  // exact up to 2^24
+        publisher.publish(message);
+      }
+    });
+    try {
+      queue.spin();
+    } catch (const std::exception& error) {
+      error_ = error.what();
+    }
+    ended_ = true;
+    sender.join();
+    ros::shutdown();
+  }
+
+  const std::string& error() const { return error_; }
+  /// True if a number was taken after the queue had ended.
+  bool was_late() const { return late_; }
+
+ private:
+  std::string error_;
+  std::atomic<bool> ended_{false}, late_{false};
+};
+
+/// Each in a process of its own: a process can be a node once only.
+class NetworkThread : public ::testing::Test {
+ protected:
+  void SetUp() override { ::testing::FLAGS_gtest_death_test_style = "threadsafe"; }
+  static constexpr int kNumbers = 10000;
+
+  template <class Run>
+  static void passes(Run run) {
+    EXPECT_EXIT(std::exit(run() ? 0 : 1), ::testing::ExitedWithCode(0), "");
+  }
+};
+
+TEST_F(NetworkThread, takes_all_messages_in_order_and_none_once_the_node_has_ended) {
+  passes([] {
+    int last = 0;
+    bool in_order = true;
+    std::thread::id thread;
+    const NumbersNode node([&](int number) {
+      if (last == 0) thread = std::this_thread::get_id();
+      in_order = in_order && number == ++last && thread == std::this_thread::get_id();
+      if (last == kNumbers) ros::requestShutdown();
+    });
+    return in_order && last >= kNumbers && thread != std::this_thread::get_id() && node.error().empty() &&
+           !node.was_late();
+  });
+}
+
+TEST_F(NetworkThread, an_exception_in_a_callback_ends_the_spin_with_it_and_no_callback_follows) {
+  passes([] {
+    int last = 0;
+    const NumbersNode node([&](int number) {
+      last = number;
+      if (number == kNumbers) throw std::runtime_error("at the last number");
+    });
+    return last == kNumbers && node.error() == "at the last number" && !node.was_late();
+  });
+}
+
+struct Broken : ros::CallbackInterface {
+  CallResult call() override { throw std::runtime_error("in the main thread"); }
+};
+
+TEST_F(NetworkThread, an_exception_in_the_main_thread_ends_the_spin_and_no_callback_follows) {
+  passes([] {
+    const NumbersNode node([&](int number) {
+      if (number == kNumbers) ros::getGlobalCallbackQueue()->addCallback(boost::make_shared<Broken>());
+    });
+    return node.error() == "in the main thread" && !node.was_late();
+  });
 }
 
 }  // namespace
