@@ -10,8 +10,9 @@ const Rgb kBack(0.91f, 0.73f, 0.62f), kPalmar(0.95f, 0.74f, 0.65f), kBlush(0.93f
     kNail(1.0f, 0.80f, 0.76f), kNailFold(0.66f, 0.43f, 0.36f);
 const Rgb kCreaseTint(0.85f, 0.74f, 0.70f);  // of the skin's colour, in the deepest fold
 constexpr float kPalmCreases = 0.5f;  // of that: lines across the palm's wide triangles would look torn
-constexpr double kFadesFrom = -0.010, kFaded = -0.034;  // x of the rest hand [m]
-constexpr double kRound = 0.85;                         // how far round the finger half a nail goes [rad]
+const Rgb kSleeve(0.36f, 0.44f, 0.55f);
+constexpr float kSleeveShade = 0.18f, kOpeningShade = 0.75f;  // what is taken of the light
+constexpr double kRound = 0.85;                 // how far round the finger half a nail goes [rad]
 constexpr double kBegins = 0.42, kPast = 0.72;  // along the bone, of its length; past its end, in its radii
 
 double to_fourth(double x) {
@@ -57,6 +58,7 @@ SkinNail skin_nail(const Vector3& vertex) {
 }
 
 SkinModel::Look skin_look(const Vector3& vertex, bool creases) {
+  const SkinSleeve sleeve = skin_sleeve(vertex);
   const auto shares = capsule_shares(vertex);
   const auto most =
       static_cast<int>(std::max_element(shares.begin(), shares.begin() + kPhalanges) - shares.begin());
@@ -68,7 +70,9 @@ SkinModel::Look skin_look(const Vector3& vertex, bool creases) {
     const float deep = bone_of(most) == 0 ? kPalmCreases : 1.0f;
     colour *= 1.0f - deep * static_cast<float>(skin_crease(vertex)) * (1.0f - kCreaseTint);
   }
-  return {with_nail(vertex, colour), static_cast<float>(smooth_step(kFadesFrom, kFaded, vertex.x())), most};
+  const auto shade = static_cast<float>(sleeve.shade);
+  if (sleeve.covers) return {kSleeve * (1.0f - kOpeningShade * shade), most};
+  return {with_nail(vertex, colour) * (1.0f - kSleeveShade * shade), most};
 }
 
 }  // namespace mrhi

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kCell = 0.0026, kDetailedCell = 0.0015;  // length of the finest triangles' sides [m]
 constexpr double kOntoCrease = 0.45 * kDetailedCell;
-constexpr double kTipWorth = 4.0, kWebWorth = 20.0;
+constexpr double kTipWorth = 4.0, kWebWorth = 20.0, kSleeveWorth = 0.3;
 constexpr double kLeastWeight = 0.01;  // of a bone; less is left to the others
 
 Hand hand_in(const HandPosture& posture) {
@@ -81,8 +81,10 @@ void settle(const DistanceField& distance, TriangleMesh& mesh) {
   }
 }
 
-/// What is looked at, fingers and most of all their ends, and what folds, the webs between two fingers.
+/// What is looked at, fingers and most of all their ends, and what folds, the webs between two fingers; least
+/// of all the sleeve.
 double worth_of(const Vector3& vertex) {
+  if (skin_sleeve(vertex).covers) return kSleeveWorth;
   const auto shares = capsule_shares(vertex);
   const auto share = [&](int finger, int bone) {
     return shares[static_cast<std::size_t>(capsule_index(finger, bone))];
@@ -98,14 +100,15 @@ double worth_of(const Vector3& vertex) {
   return worth + kWebWorth * (all - most);
 }
 
-/// Nails raised, their edges and the creases sunk: no posture, but what keeps triangles' sides along them.
+/// Nails and sleeve raised, nails' edges and creases sunk: no posture, but what keeps triangles' sides along
+/// them.
 Places with_relief(const Skin& skin, bool creases) {
   constexpr double kRelief = 0.0025;  // [m]
   Places places;
   for (const Vector3& vertex : skin.rest()) {
     const SkinNail here = skin_nail(vertex);
-    places.push_back(vertex + kRelief * (here.nail - here.edge - (creases ? skin_crease(vertex) : 0.0)) *
-                                  skin_normal(vertex));
+    const double raised = here.nail - here.edge - (creases ? skin_crease(vertex) : 0.0);
+    places.push_back(vertex + kRelief * (raised + skin_sleeve(vertex).covers) * skin_normal(vertex));
   }
   return places;
 }

@@ -14,7 +14,7 @@ TriangleMesh modelled_skin(std::size_t triangles);
 /// A skin of a mesh on the rest hand's surface; `detailed`: with creases.
 SkinModel skinned(const TriangleMesh& rest, bool detailed);
 
-constexpr std::size_t kDetailedTriangles = 10000, kHumanTriangles = 1200,
+constexpr std::size_t kDetailedTriangles = 12000, kHumanTriangles = 1228,
                       kOutlineTriangles = 400;  ///< of what ships
 
 }  // namespace mrhi

@@ -12,11 +12,15 @@ namespace {
 
 constexpr double kWeb = 0.005;         // how far two fingers' skins are rounded into each other [m]
 constexpr double kFlesh = 0.010;       // two parts of the palm [m]
-constexpr double kForearm = 0.006;     // the palm and the forearm [m]
+constexpr double kForearm = 0.010;     // the palm and the forearm [m]
 constexpr double kBetweenWebs = 0.92;  // of a finger's width
 constexpr double kCreaseDepth = 0.0003, kNailFoldDepth = 0.0003;  // [m]
 constexpr double kReliefZone = 0.003;                             // about the skin, in which folds count [m]
-constexpr double kStump = 0.036;                                  // from the wrist to where the skin ends [m]
+constexpr double kForearmWidth = 0.0250, kForearmThickness = 0.0138;  // half of each [m]
+constexpr double kForearmEnd = -0.030;                                // x of the rest hand, in the sleeve [m]
+constexpr double kSleeveEnd = -0.0438;                                // x of its opening [m]
+constexpr double kSleeveThickness = 0.0034, kOpeningDepth = 0.006;    // [m]
+constexpr double kSleeveEdge = 0.0016;                                // over which its edges are round [m]
 
 /// min - w h^2 / 4 with h = 1 - |a - b| / w, where that is > 0: smooth where the two meet, deepest there by w
 /// / 4, and the lesser of both beyond w. Unlike a minimum it is not associative: the order of the parts is
@@ -124,27 +128,58 @@ std::vector<Cone> web_cones() {
   return cones;
 }
 
-/// An elliptic cylinder about x that ends round, at the x of its last point. x counts twice from half a
-/// thickness before the end on: it ends in half an ellipsoid.
-double forearm_distance(const Vector3& p, double end, double half_width, double half_thickness) {
+/// An elliptic cylinder about x that is wider than the forearm by `out`, and ends round at x = `end`. x
+/// counts twice from half a thickness before the end on: it ends in half an ellipsoid.
+double forearm_distance(const Vector3& p, double end, double out) {
+  const double half_width = kForearmWidth + out, half_thickness = kForearmThickness + out;
   const Vector3 q(std::max(0.0, p.x() - end + 0.5 * half_thickness) * 2.0,
                   p.y() * half_thickness / half_width, p.z() - 0.001);
   return q.norm() - half_thickness;
 }
 
-}  // namespace
+/// Intersection: the negative of a union of negatives.
+double smooth_max(double a, double b, double width) {
+  return -smooth_min(-a, -b, width);
+}
 
-/// Parts are united in a fixed order, and cut off at the wrist by x >= -kStump: an intersection is the
-/// negative of a union of negatives.
-double skin_distance(const Vector3& point) {
+/// Half an ellipsoid, hollowed out of the sleeve's end.
+double opening_distance(const Vector3& p) {
+  const Vector3 q((p.x() - kSleeveEnd) * kForearmThickness / kOpeningDepth,
+                  p.y() * kForearmThickness / kForearmWidth, p.z() - 0.001);
+  return q.norm() - kForearmThickness;
+}
+
+/// An elliptic cylinder about the forearm.
+double sleeve_distance(const Vector3& p) {
+  constexpr double kUncut = 1.0;  // x of an end that is cut off [m]
+  const double beyond = std::max(p.x() - kSleeveHem, kSleeveEnd - p.x());
+  const double whole = smooth_max(forearm_distance(p, kUncut, kSleeveThickness), beyond, kSleeveEdge);
+  return smooth_max(whole, -opening_distance(p), kSleeveEdge);
+}
+
+/// Parts are united in a fixed order.
+double hand_distance(const Vector3& point) {
   static const std::vector<Cone> palm = palm_cones(), webs = web_cones();
   static const std::array<Finger, kFingers> fingers{{Finger(0), Finger(1), Finger(2), Finger(3), Finger(4)}};
   double distance = palm[0].distance(point);
   for (const Cone& cone : palm) distance = smooth_min(distance, cone.distance(point), kFlesh);
   for (const Finger& finger : fingers) distance = smooth_min(distance, finger.distance(point), kWeb);
   for (const Cone& cone : webs) distance = smooth_min(distance, cone.distance(point), kWeb);
-  distance = smooth_min(distance, forearm_distance(point, 0.027, 0.0250, 0.0138), kForearm);
-  return -smooth_min(-distance, point.x() + kStump, 0.004);
+  distance = smooth_min(distance, forearm_distance(point, 0.012, 0.0), kForearm);
+  return std::max(distance, kForearmEnd - point.x());
+}
+
+}  // namespace
+
+SkinSleeve skin_sleeve(const Vector3& point) {
+  constexpr double kShade = 0.004;  // width of the sleeve's shade on the skin [m]
+  const double sleeve = sleeve_distance(point), hand = hand_distance(point);
+  if (sleeve > hand - 0.5 * kSleeveEdge) return {false, smooth_step(kShade, 0.0, sleeve)};
+  return {true, smooth_step(0.0025, 0.0005, opening_distance(point))};
+}
+
+double skin_distance(const Vector3& point) {
+  return std::min(hand_distance(point), sleeve_distance(point));
 }
 
 double detailed_skin_distance(const Vector3& point) {
@@ -165,7 +200,7 @@ SkinBox skin_box() {
   constexpr double kMargin = 0.022;  // thicker than any part
   box.lowest -= Vector3::Constant(kMargin);
   box.highest += Vector3::Constant(kMargin);
-  box.lowest.x() = -kStump - kMargin;
+  box.lowest.x() = kSleeveEnd - kMargin;
   return box;
 }
 

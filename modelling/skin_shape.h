@@ -11,6 +11,16 @@ double skin_distance(const Vector3& point);
 /// With the creases and the edges of the nails sunk.
 double detailed_skin_distance(const Vector3& point);
 
+constexpr double kSleeveHem = -0.016;  ///< x of the rest hand, from where a sleeve covers the forearm [m]
+
+/// Whether a place on the skin is the sleeve, and how far it is in the shade of the sleeve's edge or in its
+/// opening, 0 to 1.
+struct SkinSleeve {
+  bool covers;
+  double shade;
+};
+SkinSleeve skin_sleeve(const Vector3& point);
+
 /// A box around it.
 struct SkinBox {
   Vector3 lowest, highest;

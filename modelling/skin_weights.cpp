@@ -54,7 +54,7 @@ double passed(int finger, int index, const Vector3& p) {
   const Vector3 q = bone.axes.transpose() * (p - bone.start);
   if (index == first_bone(finger)) {
     const double zone = finger == 0 ? kThumbZone : kWristZone;
-    return smooth_step(-zone, zone, q.x());
+    return smooth_step(-zone, zone, q.x()) * smooth_step(kSleeveHem, kSleeveHem + kThumbZone, p.x());
   }
   const double inside = 0.5 * (1.0 - std::clamp(q.z() / bone.radius, -kDeepest, 1.0));
   const double zone = bone.radius * (index == 1 ? 1.0 + 0.9 * inside : 0.75 + 0.65 * inside);

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <set>
 
 #include "../math/rotation.h"
 #include "../simulation/contact_phase.h"
@@ -225,9 +224,6 @@ double flattened(double height, double depth) {
   return std::max(0.0, 1.5 * (height - depth));
 }
 
-/// Distance from the rim to the lid's centre, into the hand [m].
-constexpr double kLidDepth = 0.006;
-
 }  // namespace
 
 std::string_view shipped_skins() {
@@ -361,45 +357,6 @@ void press_flat(const std::vector<Contact>& contacts, const SimulationState& sta
       if (near) surface.vertices[v] += (flattened(height, depth) - height) * contact.normal;
     }
   }
-}
-
-/// The rim is one loop of edges. The lid is a fan from its centre: the loop is jagged, and a fan from one of
-/// its corners would stand out between the teeth.
-SkinWrist::SkinWrist(const Skin& skin) : skin_(skin) {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
-  for (const auto& t : skin.triangles()) {
-    const Triangle triangle{static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
-                            static_cast<std::uint32_t>(t[2])};
-    const bool fades =
-        std::any_of(triangle.begin(), triangle.end(), [this](std::uint32_t v) { return opacity(v) < 1.0f; });
-    (fades ? fading_ : opaque_).push_back(triangle);
-    for (std::size_t i = 0; i < 3 && !fades; ++i) {
-      const std::uint32_t a = triangle[i], b = triangle[(i + 1) % 3];
-      if (edges.erase({b, a}) == 0) edges.insert({a, b});
-    }
-  }
-  for (const auto& [a, b] : edges) {
-    opaque_.push_back({static_cast<std::uint32_t>(skin.size()), b, a});
-    rim_.push_back(a);
-  }
-}
-
-/// The lid lies inside the hand: it is hidden except from the forearm. It is lit like its side of the hand.
-void SkinWrist::add_lid(SkinSurface& surface, std::vector<Rgb>& colours) const {
-  Vector3 rim = Vector3::Zero(), faded = Vector3::Zero();
-  Rgb colour = Rgb::Zero(), light = Rgb::Zero();
-  for (const std::uint32_t vertex : rim_) {
-    rim += surface.vertices[vertex] / static_cast<double>(rim_.size());
-    colour += colours[vertex];
-    light += light_on(surface.normals[vertex].cast<float>());
-  }
-  for (const Triangle& triangle : fading_)
-    for (const std::uint32_t v : triangle)
-      faded += surface.vertices[v] / (3.0 * static_cast<double>(fading_.size()));
-  const Vector3 outward = (faded - rim).normalized();
-  surface.vertices.push_back(rim - kLidDepth * outward);
-  surface.normals.push_back(outward);
-  colours.push_back((colour / light * light_on(outward.cast<float>())).min(1.0f));
 }
 
 }  // namespace mrhi

@@ -58,7 +58,6 @@ struct SkinModel {
   };
   struct Look {
     Rgb colour;   ///< in white light
-    float wrist;  ///< 0, or how far the vertex has faded away at the wrist, up to 1
     int capsule;  ///< that the vertex belongs to most
   };
 
@@ -181,28 +180,5 @@ void press_flat(const std::vector<Contact>& contacts, const SimulationState& sta
                 const Skin& skin, SkinSurface& surface);
 
 constexpr double kDeepestPress = 0.0018;  ///< [m]
-
-/// A skin's triangles by how they are drawn: opaque up to a rim, and fading from there to nothing along the
-/// wrist. A lid about one more vertex, skin.size(), closes the opaque part, so that the inside is not visible
-/// through the wrist. Immutable.
-class SkinWrist {
- public:
-  explicit SkinWrist(const Skin& skin);  ///< keeps a reference
-
-  using Triangle = std::array<std::uint32_t, 3>;
-  const std::vector<Triangle>& opaque() const { return opaque_; }  ///< the lid included
-  const std::vector<Triangle>& fading() const { return fading_; }
-  /// Opacity of a vertex: 1 everywhere except at the wrist.
-  float opacity(std::size_t vertex) const {
-    return vertex < skin_.size() ? 1.0f - skin_.model().looks[vertex].wrist : 1.0f;
-  }
-  /// Adds the lid's vertex to a surface of the skin and its colours.
-  void add_lid(SkinSurface& surface, std::vector<Rgb>& colours) const;
-
- private:
-  const Skin& skin_;
-  std::vector<Triangle> opaque_, fading_;
-  std::vector<std::uint32_t> rim_;
-};
 
 }  // namespace mrhi

@@ -18,10 +18,11 @@ using visualization_msgs::Marker;
 constexpr double kMaxLength = 0.12;         // of an arrow for an infinite force [m]
 constexpr double kHalfLengthForce = 3.0;    // force whose arrow is half as long [N]
 constexpr double kLetters = 0.009;          // height of a force's number [m]
+constexpr double kNumberGap = 0.017;        // from an arrow to the middle of its number [m]
 constexpr double kMinLength = 0.004;        // [m]
 constexpr double kGap = 0.002;              // between the arrow and the back of the finger [m]
 constexpr double kPointSize = 0.005;        // [m]
-constexpr double kPieces = 14.0;            // of a ring
+constexpr double kPieces = 28.0;            // of a ring
 constexpr double kLift = 0.0006;            // of a ring above the surface [m]
 constexpr double kMinImpulse = 0.002;       // smallest impact with a ring [N s]
 constexpr double kHalfWidthImpulse = 0.02;  // impulse whose ring widens half as far as the widest [N s]
@@ -80,7 +81,7 @@ struct ForceMarkers {
     std::snprintf(text, sizeof text, "%.1f N", newtons);
     numbers
         .add(this_id, Marker::TEXT_VIEW_FACING,
-             {Vector3(outer + kLetters * outwards), Quaternion::Identity()}, Vector3::Constant(kLetters),
+             {Vector3(outer + kNumberGap * outwards), Quaternion::Identity()}, Vector3::Constant(kLetters),
              paint)
         .text = text;
   }

@@ -14,7 +14,7 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr int kSpare = 8 * kMaxHands;  // skin, sides of the wrist and ghost of each hand
+constexpr int kSpare = 2 * kMaxHands;  // skin and ghost of each hand
 
 HandStyle capsule_style() {
   return {color(0.91, 0.76, 0.65), color(0.84, 0.28, 0.06), 1.0};
@@ -52,17 +52,7 @@ Rgb ghost_colour(const Vector3& normal, const PictureStyle& style) {
   return light * Rgb(style.ghost.r, style.ghost.g, style.ghost.b);
 }
 
-HandMarkers::HandMarkers(const Skin& skin)
-    : skin_(skin), outline_(Skin::outline()), paint_(skin_), wrist_(skin_) {
-  for (const auto& triangle : wrist_.fading()) sides_[side_of_wrist(triangle)].push_back(triangle);
-}
-
-std::size_t HandMarkers::side_of_wrist(const SkinWrist::Triangle& triangle) const {
-  Vector3 centre = Vector3::Zero();
-  for (const std::uint32_t vertex : triangle) centre += skin_.rest()[vertex] / 3.0;
-  const double turns = 0.5 + std::atan2(centre.z(), centre.y()) / (2.0 * M_PI);
-  return static_cast<std::size_t>(std::min(kWristSides - 1, static_cast<int>(kWristSides * turns)));
-}
+HandMarkers::HandMarkers(const Skin& skin) : skin_(skin), outline_(Skin::outline()), paint_(skin_) {}
 
 void HandMarkers::add(const FrameResult& result, const SimulationState& state, const PictureStyle& style,
                       const MarkerLayers& layers) {
@@ -91,33 +81,19 @@ void HandMarkers::add_hand(const RenderedHand& rendered, const Hand& tracked, co
   if (apart) add_ghost(rendered.hand, tracked, style, first_id, ghost);
 }
 
-void HandMarkers::add_skin(const RenderedHand& rendered, int first_id, const MarkerLayer& layer) {
-  paint_.paint(rendered, surface_, colours_);
-  wrist_.add_lid(surface_, colours_);
-  const Side side = rendered.hand.side;
-  add_part(wrist_.opaque(), side, Vector3::Zero(), first_id, layer);
-  for (const Triangles& triangles : sides_) {
-    Vector3 middle = Vector3::Zero();
-    for (const auto& triangle : triangles)
-      for (const std::uint32_t v : triangle)
-        middle += surface_.vertices[v] / (3.0 * static_cast<double>(triangles.size()));
-    add_part(triangles, side, middle, ++first_id, layer);
-  }
-}
-
 /// Counter-clockwise from outside for both left and right hands.
-void HandMarkers::add_part(const Triangles& triangles, Side side, const Vector3& origin, int id,
-                           const MarkerLayer& layer) {
+void HandMarkers::add_skin(const RenderedHand& rendered, int id, const MarkerLayer& layer) {
+  paint_.paint(rendered, surface_, colours_);
   Marker& marker = add_triangles(id, layer);
-  marker.pose.position = to_message(origin);
-  marker.points.resize(3 * triangles.size());
-  marker.colors.resize(3 * triangles.size());
+  marker.points.resize(3 * skin_.triangles().size());
+  marker.colors.resize(3 * skin_.triangles().size());
   std::size_t i = 0;
-  for (const auto& triangle : triangles) {
+  for (const auto& triangle : skin_.triangles()) {
     for (const std::size_t corner : {0, 1, 2}) {
-      const std::uint32_t v = triangle[side == Side::left ? 2 - corner : corner];
-      marker.points[i] = to_message(Vector3(surface_.vertices[v] - origin));
-      marker.colors[i++] = color_message(colours_[v], wrist_.opacity(v));
+      const auto v =
+          static_cast<std::size_t>(triangle[rendered.hand.side == Side::left ? 2 - corner : corner]);
+      marker.points[i] = to_message(surface_.vertices[v]);
+      marker.colors[i++] = color_message(colours_[v], 1.0f);
     }
   }
 }

@@ -78,9 +78,8 @@ Rgb ghost_colour(const Vector3& normal, const PictureStyle& style);
 class HandMarkers {
  public:
   explicit HandMarkers(const Skin& skin);  ///< keeps a reference
-  /// `hand`: skins, and separately the sides of their wrists; `ghost`: tracked hands' skins where they
-  /// differ; `capsules`: rendered hands as simulated. kIdsPerHand for each hand. Without `style.skins` the
-  /// first two have only hands without a skin.
+  /// `hand`: skins; `ghost`: tracked hands' skins where they differ; `capsules`: rendered hands as simulated.
+  /// kIdsPerHand for each hand. Without `style.skins` the first two have only hands without a skin.
   void add(const FrameResult& result, const SimulationState& state, const PictureStyle& style,
            const MarkerLayers& layers);
   /// Takes used markers, to reuse their memory.
@@ -90,23 +89,13 @@ class HandMarkers {
   void add_hand(const RenderedHand& rendered, const Hand& tracked, const FrameResult& result,
                 const SimulationState& state, const PictureStyle& style, int first_id,
                 const MarkerLayer& hand, const MarkerLayer& ghost);
-  /// Translucent markers do not hide each other and are drawn from back to front by their positions. In one
-  /// marker the wrist's far side could be drawn over its near side.
-  static constexpr int kWristSides = 6;
-  using Triangles = std::vector<SkinWrist::Triangle>;
   visualization_msgs::Marker& add_triangles(int id, const MarkerLayer& layer);
-  void add_part(const Triangles& triangles, Side side, const Vector3& origin, int id,
-                const MarkerLayer& layer);
-  void add_skin(const RenderedHand& rendered, int first_id, const MarkerLayer& layer);
+  void add_skin(const RenderedHand& rendered, int id, const MarkerLayer& layer);
   void add_ghost(const Hand& rendered, const Hand& tracked, const PictureStyle& style, int id,
                  const MarkerLayer& layer);
-  /// Side of the wrist, as seen along the forearm.
-  std::size_t side_of_wrist(const SkinWrist::Triangle& triangle) const;
 
   const Skin &skin_, &outline_;
   const SkinPaint paint_;
-  const SkinWrist wrist_;
-  std::array<Triangles, kWristSides> sides_;
   SkinSurface surface_, ghost_, beneath_;  // reused memory, like the rest
   std::vector<Rgb> colours_;
   std::vector<float> alphas_;

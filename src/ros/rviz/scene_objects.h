@@ -57,20 +57,24 @@ constexpr float kStatusHeight = 0.05f;   ///< height of its letters, over half t
 
 constexpr const char* kGroup = "General";  ///< of OGRE's resources
 
-/// Material of vertices with their own lighting: opaque, or blended by their alpha.
+/// Material of vertices with their own lighting: opaque, or blended by their alpha where nothing of the same
+/// object is nearer, in whatever order its triangles are.
 inline Ogre::MaterialPtr vertex_colour_material(bool blended) {
   const std::string name = std::string("mr_hand_interaction/vertex_colours") + (blended ? "_blended" : "");
   Ogre::MaterialManager& manager = Ogre::MaterialManager::getSingleton();
   if (manager.resourceExists(name)) return manager.getByName(name, kGroup);
   Ogre::MaterialPtr material = manager.create(name, kGroup);
+  Ogre::Technique& technique = *material->getTechnique(0);
+  if (blended) technique.createPass();  // the first finds what is nearest
   material->setReceiveShadows(false);
   material->setLightingEnabled(false);
   material->setCullingMode(Ogre::CULL_CLOCKWISE);
   if (blended) {
     material->setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
-    material->setDepthWriteEnabled(true);
+    technique.getPass(0)->setColourWriteEnabled(false);
+    technique.getPass(1)->setDepthFunction(Ogre::CMPF_EQUAL);
     // Ogre sorts materials that write depth among the opaque, where they would hide bodies behind them.
-    material->getTechnique(0)->getPass(0)->setTransparentSortingForced(true);
+    technique.getPass(0)->setTransparentSortingForced(true);
   }
   return material;
 }
@@ -245,11 +249,7 @@ inline void add_vertex(const Vector3& place, const Vector3& normal, const Rgb& c
 class SkinObject {
  public:
   SkinObject(Ogre::SceneManager* manager, Ogre::SceneNode* parent)
-      : skin_(Skin::detailed()),
-        paint_(skin_),
-        wrist_(skin_),
-        manager_(manager),
-        node_(parent->createChildSceneNode()) {
+      : skin_(Skin::detailed()), paint_(skin_), manager_(manager), node_(parent->createChildSceneNode()) {
     static int count = 0;
     object_ = manager_->createManualObject("mr_hand_interaction/skin" + std::to_string(count++));
     object_->setDynamic(true);
@@ -275,12 +275,10 @@ class SkinObject {
       const Eigen::Vector3f to_eye = (eye - surface_.vertices[v]).cast<float>().normalized();
       colours_[v] = (colours_[v] + sheen(surface_.normals[v].cast<float>(), to_eye)).min(1.0f);
     }
-    wrist_.add_lid(surface_, colours_);
-    // The wrist's far side is visible through its near side, and is drawn first.
-    const Side side = rendered.hand.side, averted = side == Side::left ? Side::right : Side::left;
-    add_section(0, wrist_.opaque(), side);
-    add_section(1, wrist_.fading(), averted);
-    add_section(2, wrist_.fading(), side);
+    begin(false);
+    for (std::size_t v = 0; v < skin_.size(); ++v)
+      add_vertex(surface_.vertices[v], surface_.normals[v], colours_[v], 1.0f, *object_);
+    end(rendered.hand.side);
     return true;
   }
 
@@ -289,54 +287,45 @@ class SkinObject {
     const bool apart = farthest_apart(rendered, tracked) > style.ghost_from;
     object_->setVisible(apart && skin_.pose(tracked, surface_) && skin_.pose(rendered, beneath_));
     if (!object_->isVisible()) return;
-    begin(0, true);
+    begin(true);
     for (std::size_t v = 0; v < skin_.size(); ++v) {
       const Vector3 to_eye = (eye - surface_.vertices[v]).normalized();
       const auto outline = static_cast<float>(1.0 - std::abs(surface_.normals[v].dot(to_eye)));
       const float seen = ghost_opacity((surface_.vertices[v] - beneath_.vertices[v]).norm(), style);
       add_vertex(surface_.vertices[v], surface_.normals[v], ghost_colour(surface_.normals[v], style),
-                 seen * wrist_.opacity(v) * (0.35f + 0.65f * outline), *object_);
+                 seen * (0.35f + 0.65f * outline), *object_);
     }
-    const std::size_t second = tracked.side == Side::left ? 2 : 1;
+    end(tracked.side);
+  }
+
+  void hide() { object_->setVisible(false); }
+
+ private:
+  void begin(bool blended) {
+    object_->estimateVertexCount(skin_.size());
+    object_->estimateIndexCount(3 * skin_.triangles().size());
+    if (std::exchange(begun_, true)) {
+      object_->beginUpdate(0);
+    } else {
+      object_->begin(vertex_colour_material(blended)->getName(), Ogre::RenderOperation::OT_TRIANGLE_LIST,
+                     kGroup);
+    }
+  }
+
+  void end(Side side) {
+    const std::size_t second = side == Side::left ? 2 : 1;
     for (const auto& t : skin_.triangles())
       object_->triangle(static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[second]),
                         static_cast<std::uint32_t>(t[3 - second]));
     object_->end();
   }
 
-  void hide() { object_->setVisible(false); }
-
- private:
-  using Triangles = std::vector<SkinWrist::Triangle>;
-  void begin(unsigned section, bool blended) {
-    object_->estimateVertexCount(skin_.size() + 1);
-    object_->estimateIndexCount(3 * skin_.triangles().size());
-    if (section < sections_) {
-      object_->beginUpdate(section);
-    } else {
-      object_->begin(vertex_colour_material(blended)->getName(), Ogre::RenderOperation::OT_TRIANGLE_LIST,
-                     kGroup);
-      ++sections_;
-    }
-  }
-
-  void add_section(unsigned section, const Triangles& triangles, Side side) {
-    begin(section, section > 0);
-    for (std::size_t v = 0; v < colours_.size(); ++v)
-      add_vertex(surface_.vertices[v], surface_.normals[v], colours_[v], wrist_.opacity(v), *object_);
-    const std::size_t second = side == Side::left ? 2 : 1;
-    for (const auto& triangle : triangles)
-      object_->triangle(triangle[0], triangle[second], triangle[3 - second]);
-    object_->end();
-  }
-
   const Skin& skin_;
   const SkinPaint paint_;
-  const SkinWrist wrist_;
   Ogre::SceneManager* manager_;
   Ogre::SceneNode* node_;
   Ogre::ManualObject* object_;
-  unsigned sections_ = 0;  // of the object
+  bool begun_ = false;
   SkinSurface surface_, beneath_;
   std::vector<Rgb> colours_;
 };
