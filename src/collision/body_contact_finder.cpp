@@ -174,10 +174,10 @@ double stiffness_of(double breadth) {
 
 /// For a pair that meets within the step, points are where it will touch, arms start from the centres at that
 /// time, and the depth is at most 0 until then. All points have equal fractions of the pair's stiffness.
+/// `contact` is that of the last step if it is `remembered`.
 void make_contact(const BodyContactKey& key, const ShapePair& pair, const Touch& touch, const Common& common,
-                  const ManifoldPoint& point, const BodyContact* memory, BodyContact& contact) {
-  if (memory != nullptr) contact = *memory;
-  const bool lasting = memory != nullptr && memory->depth > 0.0 && point.depth > 0.0;
+                  const ManifoldPoint& point, bool remembered, BodyContact& contact) {
+  const bool lasting = remembered && contact.depth > 0.0 && point.depth > 0.0;
   contact.key = key;
   contact.point = point.point;
   contact.normal = touch.manifold.normal_of(point.region);
@@ -226,16 +226,20 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
   followed_ = followed_gap(neighbours, bodies, asleep, step, driven);
   reached_ = 0;
   reaches_.resize(bodies.size());
-  for (const int body : neighbours.paired()) {
-    const auto b = static_cast<std::size_t>(body);
-    reaches_[b] = reach_of(b, bodies[b], step);
-  }
+  for (const int body : neighbours.paired()) reaches_[static_cast<std::size_t>(body)].reset();
+  const auto reach = [&](std::size_t body) -> Reach& {
+    std::optional<Reach>& found = reaches_[body];
+    return found ? *found : found.emplace(reach_of(body, bodies[body], step));
+  };
   for (const auto& [a, b] : neighbours.pairs()) {
     const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
     if (asleep[ib] && (asleep[ia] || scene_.bodies[ia].fixed)) continue;
-    const Reach &of_a = reaches_[ia], &of_b = reaches_[ib];
+    Reach &of_a = reach(ia), &of_b = reach(ib);
     const Vector3 apart = (of_a.centre - of_b.centre).cwiseAbs() - of_a.half - of_b.half;
-    if (apart.maxCoeff() <= 0.0) find_pair(ia, ib, bodies, step, contacts);
+    if (apart.maxCoeff() > 0.0) continue;
+    if (!of_a.moving) of_a.moving.emplace(scene_.bodies[ia], bodies[ia], gravity_);
+    if (!of_b.moving) of_b.moving.emplace(scene_.bodies[ib], bodies[ib], gravity_);
+    find_pair(ia, ib, step, contacts);
   }
   contacts.swap(found_);
 }
@@ -289,14 +293,13 @@ const BodyContact* BodyContactFinder::memory_of(const BodyContactKey& key,
 }
 
 /// The margin is the distance that the two can close in the step; pairs farther apart have no manifold.
-void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vector<BodyState>& bodies,
-                                  double step, const std::vector<BodyContact>& before) {
-  const Body &body_a = scene_.bodies[ia], &body_b = scene_.bodies[ib];
-  const double travel = reaches_[ia].travel + reaches_[ib].travel;
-  const MovingBody a(body_a, bodies[ia], gravity_), b(body_b, bodies[ib], gravity_);
+void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
+                                  const std::vector<BodyContact>& before) {
+  const double travel = reaches_[ia]->travel + reaches_[ib]->travel;
+  const MovingBody &a = *reaches_[ia]->moving, &b = *reaches_[ib]->moving;
   const double turned = fastest_point(a) * step, margin = travel + turned + fastest_point(b) * step;
   const double within =
-      body_b.bounding_radius + travel + turned;  // of b's centre: its own turning is in the ball
+      b.body.bounding_radius + travel + turned;  // of b's centre: its own turning is in the ball
   for (std::size_t i = 0; i < a.body.shapes.size(); ++i) {
     const double away =
         at_least_away(b.pose.position, geometry_.shapes[ia][i], a.body.shapes[i].pose, a.pose);
@@ -314,8 +317,13 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, const std::vec
         if (touch->time >= 0.0 && point.depth < -kMinSeparation) continue;  // meets later
         const BodyContactKey key{static_cast<std::uint16_t>(ia), static_cast<std::uint16_t>(ib),
                                  static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};
-        found_.emplace_back();
-        make_contact(key, pair, *touch, common, point, memory_of(key, before), found_.back());
+        const BodyContact* memory = memory_of(key, before);
+        if (memory != nullptr) {
+          found_.push_back(*memory);
+        } else {
+          found_.emplace_back();
+        }
+        make_contact(key, pair, *touch, common, point, memory != nullptr, found_.back());
         regions[found_.size() - 1 - first] = point.region;
       }
       for (int region = 0; region < Manifold::kMaxRegions; ++region) {

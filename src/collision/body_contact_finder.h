@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mr_hand_interaction/collision/body_contact.h"
@@ -23,21 +24,21 @@ class BodyContactFinder {
 
  private:
   struct Reach {
-    Vector3 centre, half;  // of a box [m]
-    double travel;         // in the step, and half the gap from which contacts are followed [m]
+    Vector3 centre, half;              // of a box [m]
+    double travel;                     // in the step, and half the gap from which contacts are followed [m]
+    std::optional<MovingBody> moving;  // of a body that another's box overlaps
   };
   double followed_gap(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
                       const std::vector<char>& asleep, double step, double driven) const;
   Reach reach_of(std::size_t index, const BodyState& state, double step) const;
   const BodyContact* memory_of(const BodyContactKey& key, const std::vector<BodyContact>& before);
-  void find_pair(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies, double step,
-                 const std::vector<BodyContact>& before);
+  void find_pair(std::size_t a, std::size_t b, double step, const std::vector<BodyContact>& before);
 
   const Scene& scene_;
   const SceneGeometry& geometry_;
   const Vector3 gravity_;
-  double followed_ = 0.0;       // gap from which contacts are followed in this step [m]
-  std::vector<Reach> reaches_;  // by body, of those that have neighbours
+  double followed_ = 0.0;                      // gap from which contacts are followed in this step [m]
+  std::vector<std::optional<Reach>> reaches_;  // by body, of those with an awake neighbour
   std::vector<BodyContact> found_;
   std::size_t reached_ = 0;  // of the contacts before
 };

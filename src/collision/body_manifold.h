@@ -25,8 +25,20 @@ struct Manifold {
   static constexpr int kMaxRegions = 3;
   Vector3 normal = Vector3::UnitZ();  ///< unit, world, out of b towards a: moving a along it separates
   std::array<Vector3, kMaxRegions - 1> other_normals{};  ///< of the further regions, likewise
-  std::array<ManifoldPoint, 4 * kMaxRegions> points{};
+  std::array<ManifoldPoint, 4 * kMaxRegions> points;
   int count = 0;
+
+  Manifold() = default;
+  Manifold(const Manifold& other) { *this = other; }
+  /// Copies the points that there are.
+  Manifold& operator=(const Manifold& other) {
+    normal = other.normal;
+    other_normals = other.other_normals;
+    count = other.count;
+    breadth = other.breadth;
+    std::copy_n(other.points.begin(), count, points.begin());
+    return *this;
+  }
   const Vector3& normal_of(int region) const {
     return region == 0 ? normal : other_normals[static_cast<std::size_t>(region - 1)];
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -45,6 +46,14 @@ struct ContactRegion {
   std::array<RegionPoint, 12> points;  ///< two rims have ten, a rim and a rectangle twelve
   int count = 0;
 
+  ContactRegion() = default;
+  ContactRegion(const ContactRegion& other) { *this = other; }
+  /// Copies the points that there are.
+  ContactRegion& operator=(const ContactRegion& other) {
+    count = other.count;
+    std::copy_n(other.points.begin(), count, points.begin());
+    return *this;
+  }
   void add(const RegionPoint& point) { points[static_cast<std::size_t>(count++)] = point; }
   RegionPoint& operator[](int i) { return points[static_cast<std::size_t>(i)]; }
   const RegionPoint& operator[](int i) const { return points[static_cast<std::size_t>(i)]; }

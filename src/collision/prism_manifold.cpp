@@ -1,6 +1,7 @@
 #include "body_manifold.h"
 
 #include <algorithm>
+#include <array>
 
 #include "flat_face.h"
 #include "prism.h"
@@ -28,8 +29,12 @@ struct FlatContact {
     exists = a_flat || b_flat;
     if (!exists) return;
     by_a = a_flat && (!b_flat || first_is_reference(of_a.area(), of_b.area(), n));
-    manifold = by_a ? touch(of_a, lying_towards(b, -of_a.normal), true, margin)
-                    : touch(of_b, lying_towards(a, -of_b.normal), false, margin);
+    // Faces that are both near n face each other.
+    if (by_a) {
+      manifold = touch(of_a, b_flat ? of_b : lying_towards(b, -of_a.normal), true, margin);
+    } else {
+      manifold = touch(of_b, a_flat ? of_a : lying_towards(a, -of_b.normal), false, margin);
+    }
     found = as_deep(deepest_depth(manifold), separation);
   }
 
@@ -120,7 +125,7 @@ class Search {
   /// The directions in turn: across a straight line of each (e_i x e_j), from an axis straight to the other's
   /// middle (a side's normal), those of distances to b's edges, and what is only found by iteration.
   void try_rest() {
-    for (int i = a_.first_flat(); i < 3; ++i)
+    for (int i = a_.first_flat(); i < 3 && !is_beyond(); ++i)
       for (int j = b_.first_flat(); j < 3; ++j) axis_.try_direction(a_.axes.col(i).cross(b_.axes.col(j)));
     for (const Prism* prism : {&a_, &b_})
       if (prism->round) axis_.try_direction(prism->across(axis_.offset()));
@@ -138,9 +143,12 @@ class Search {
   void try_gaps() {
     const Quaternion turn_a(a_.axes);
     const Pose pose_a{a_.centre, turn_a};
-    for (int i = 0; i < kEdges; ++i) {
+    std::array<Vector3, 8> corners;
+    for (int i = 0; i < 8; ++i) corners[static_cast<std::size_t>(i)] = pose_a.to_local(b_.corner(i));
+    for (int i = 0; i < kEdges && !is_beyond(); ++i) {
       const auto [low, high] = edge_ends(i);
-      const Capsule edge{pose_a.to_local(b_.corner(low)), pose_a.to_local(b_.corner(high)), 0.0};
+      const Capsule edge{corners[static_cast<std::size_t>(low)], corners[static_cast<std::size_t>(high)],
+                         0.0};
       const ClosestFeatures features = closest_on(shape_a_.shape, shape_a_.mesh, edge, kAnyDistance);
       if (features.distance > 0.0) axis_.try_direction(turn_a * features.normal);
     }

@@ -222,26 +222,6 @@ ContactPatch make_patch(double step, const std::vector<SpringContact>& rows, std
   return patch;
 }
 
-Motion6 ContactPatch::relative_motion(const PatchBody& of_a, const PatchBody& of_b) const {
-  const Motion6 &m = of_a.motion, &o = of_b.motion;
-  Motion6 motion = drive;
-  motion.head<3>() +=
-      axes * (m.head<3>() + m.tail<3>().cross(arm_a) - o.head<3>() - o.tail<3>().cross(arm_b));
-  motion.tail<3>() += axes * (m.tail<3>() - o.tail<3>());
-  return motion;
-}
-
-//     v_b += J / m_b,  w_b += I_b^-1 (b x J + L),      v_a and w_a by -J and -L
-void ContactPatch::apply(const Motion6& impulse, PatchBody& of_a, PatchBody& of_b) const {
-  const Vector3 linear = axes.transpose() * impulse.head<3>();
-  const Vector3 angular = axes.transpose() * impulse.tail<3>();
-  of_b.motion.head<3>() += of_b.inverse_mass * linear;
-  of_b.motion.tail<3>() += of_b.inverse_inertia * (arm_b.cross(linear) + angular);
-  if (of_a.inverse_mass == 0.0) return;
-  of_a.motion.head<3>() -= of_a.inverse_mass * linear;
-  of_a.motion.tail<3>() -= of_a.inverse_inertia * (arm_a.cross(linear) + angular);
-}
-
 void ContactPatch::start_from(const Vector3& force, double step, PatchPoint& point, PatchBody& of_a,
                               PatchBody& of_b) const {
   if (force == Vector3::Zero()) return;

@@ -83,4 +83,30 @@ struct ContactPatch {
 ContactPatch make_patch(double step, const std::vector<SpringContact>& rows, std::size_t first, int count,
                         const std::vector<PatchBody>& bodies, std::vector<PatchPoint>& points);
 
+// Inline, as each sweep calls them for each patch.
+[[gnu::always_inline]] inline Motion6 ContactPatch::relative_motion(const PatchBody& of_a,
+                                                                    const PatchBody& of_b) const {
+  const Motion6 &m = of_a.motion, &o = of_b.motion;
+  Motion6 motion = drive;
+  Vector3 linear = Vector3::Zero();
+  if (of_a.inverse_mass != 0.0) linear = m.head<3>() + m.tail<3>().cross(arm_a);
+  linear -= o.head<3>();
+  linear -= o.tail<3>().cross(arm_b);
+  motion.head<3>() += axes * linear;
+  motion.tail<3>() += axes * (m.tail<3>() - o.tail<3>());
+  return motion;
+}
+
+//     v_b += J / m_b,  w_b += I_b^-1 (b x J + L),      v_a and w_a by -J and -L
+[[gnu::always_inline]] inline void ContactPatch::apply(const Motion6& impulse, PatchBody& of_a,
+                                                       PatchBody& of_b) const {
+  const Vector3 linear = axes.transpose() * impulse.head<3>();
+  const Vector3 angular = axes.transpose() * impulse.tail<3>();
+  of_b.motion.head<3>() += of_b.inverse_mass * linear;
+  of_b.motion.tail<3>() += of_b.inverse_inertia * (arm_b.cross(linear) + angular);
+  if (of_a.inverse_mass == 0.0) return;
+  of_a.motion.head<3>() -= of_a.inverse_mass * linear;
+  of_a.motion.tail<3>() -= of_a.inverse_inertia * (arm_a.cross(linear) + angular);
+}
+
 }  // namespace mrhi

@@ -25,6 +25,29 @@ double time_to_reach(const Vector3& apart, const Vector3& velocity, double dista
   return outside / (closing + std::sqrt(discriminant));
 }
 
+// Partner's velocity() and apply(), inline for relax(), which is most of an impact's cost. Only a free body
+// has a state: neither a hand nor a body with joints.
+//
+//     v + w x r (Eq. 7), or J u. The hand's own velocity is `hand_velocity`.
+[[gnu::always_inline]] inline Vector3 velocity_of(const ImpactPoint::Partner& partner) {
+  if (partner.state != nullptr)
+    return partner.inverse_mass * partner.state->linear_momentum +
+           (partner.inverse_inertia * partner.state->angular_momentum).cross(partner.arm);
+  if (partner.joints != nullptr) return partner.joints->jacobian * *partner.joints->velocity;
+  return partner.recoil != nullptr ? *partner.recoil : Vector3(Vector3::Zero());
+}
+
+[[gnu::always_inline]] inline void apply_to(const ImpactPoint::Partner& partner, const Vector3& impulse) {
+  if (partner.state != nullptr) {
+    partner.state->linear_momentum += impulse;
+    partner.state->angular_momentum += partner.arm.cross(impulse);
+  } else if (partner.joints != nullptr) {
+    partner.joints->velocity->noalias() += partner.joints->response * impulse;
+  } else if (partner.recoil != nullptr) {
+    *partner.recoil += partner.inverse_mass * impulse;
+  }
+}
+
 }  // namespace
 
 Vector3 ImpactPoint::Partner::velocity_of_centre() const {
@@ -32,23 +55,12 @@ Vector3 ImpactPoint::Partner::velocity_of_centre() const {
   return inverse_mass * state->linear_momentum;
 }
 
-// v + w x r (Eq. 7), or J u. The hand's own velocity is `hand_velocity`.
 Vector3 ImpactPoint::Partner::velocity() const {
-  if (joints != nullptr) return joints->jacobian * *joints->velocity;
-  if (recoil != nullptr) return *recoil;
-  if (state == nullptr) return Vector3::Zero();
-  return velocity_of_centre() + (inverse_inertia * state->angular_momentum).cross(arm);
+  return velocity_of(*this);
 }
 
 void ImpactPoint::Partner::apply(const Vector3& impulse) {
-  if (joints != nullptr) {
-    joints->velocity->noalias() += joints->response * impulse;
-    return;
-  }
-  if (recoil != nullptr) *recoil += inverse_mass * impulse;
-  if (state == nullptr) return;
-  state->linear_momentum += impulse;
-  state->angular_momentum += arm.cross(impulse);
+  apply_to(*this, impulse);
 }
 
 // A capsule of the hand is a point mass. 1/m is 0 for the paper's hand and for fixtures.
@@ -154,7 +166,7 @@ void ImpactPoint::begin() {
 // impulse, w + (j' - j) K n, and both directions at once. Limited separately they would form a square, with
 // friction 1.4 times too strong at its corners. Impacts use static friction, the limit of Coulomb's law.
 double ImpactPoint::relax() {
-  Vector3 velocity = relative_velocity();
+  Vector3 velocity = hand_velocity + velocity_of(a) - velocity_of(b);
   const double change =
       std::max(0.0, normal_impulse + normal_mass * (target - normal.dot(velocity))) - normal_impulse;
   normal_impulse += change;
@@ -169,8 +181,8 @@ double ImpactPoint::relax() {
     impulse += unlimited - friction_impulse;
     friction_impulse = unlimited;
   }
-  a.apply(-impulse);
-  b.apply(impulse);
+  apply_to(a, -impulse);
+  apply_to(b, impulse);
   return normal_mass > 0.0 ? error / normal_mass : 0.0;
 }
 
