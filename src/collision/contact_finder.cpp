@@ -47,7 +47,7 @@ AxisSpan span_over(const PlacedCollider& collider, const Capsule& capsule, const
   const AxisSpan span = collider.span(capsule, features);
   if (span.s1 > span.s0 || features.distance >= 0.0 || !collider.is_at_edge(features, span)) return span;
   const AxisSpan faces{over_face(collider, capsule, features, 0.0),
-                       over_face(collider, capsule, features, 1.0)};
+                       over_face(collider, capsule, features, 1.0), span.at_edge};
   return faces.s1 > faces.s0 ? faces : span;
 }
 
