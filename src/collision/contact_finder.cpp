@@ -42,10 +42,10 @@ double over_face(const PlacedCollider& collider, const Capsule& capsule, const C
   return s + std::max(0.0, 1.0 - lifted) * (until - s);
 }
 
-/// Part of the axis over the surface at the features, beside an edge on both sides.
+/// Part of the axis over the surface at the features, beside an edge of a box or a cylinder on both sides.
 AxisSpan span_over(const PlacedCollider& collider, const Capsule& capsule, const ClosestFeatures& features) {
   const AxisSpan span = collider.span(capsule, features);
-  if (span.s1 > span.s0 || features.distance >= 0.0 || !collider.is_at_edge(features, span)) return span;
+  if (!span.at_edge || features.distance >= 0.0) return span;
   const AxisSpan faces{over_face(collider, capsule, features, 0.0),
                        over_face(collider, capsule, features, 1.0), span.at_edge};
   return faces.s1 > faces.s0 ? faces : span;
