@@ -1,6 +1,7 @@
 #include "contact_finder.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sweep.h"
 
@@ -14,6 +15,40 @@ constexpr double kMargin = 0.001;
 
 Capsule to_local(const Pose& pose, const Capsule& capsule) {
   return {pose.to_local(capsule.start), pose.to_local(capsule.end), capsule.radius};
+}
+
+/// Part of the axis, from the point of the features towards `end`, over the face on that side of an edge.
+///
+/// A phalanx that hangs over an edge is nearest to it as soon as it tilts. Its pad still touches the face
+/// beside the edge: of the length over the face the fraction 1 - rise / depth, where the axis rises by `rise`
+/// above the face on it. The load then moves as it does between two points over one face, by the lever rule:
+/// to the middle of the length without tilt, and to the edge as the far end lifts off. It does so for faces
+/// up to kMaxFaceSine from the normal, or else a deep pad would lie on either face of a right angle.
+double over_face(const PlacedCollider& collider, const Capsule& capsule, const ClosestFeatures& features,
+                 double end) {
+  constexpr double kHeight = 2e-5, kStep = 2e-4;  // of a place beside the edge, over the face [m]
+  constexpr double kMaxFaceSine = 0.7;
+  const double s = features.axis_parameter;
+  const Vector3 along = capsule.end - capsule.start;
+  const Vector3 step = (end > s ? kStep : -kStep) * along.normalized();
+  const Vector3 place = features.point + kHeight * features.normal + step;
+  const ClosestFeatures face = collider.closest({place, place, 0.0}, kStep);
+  const double sine = face.normal.cross(features.normal).norm();
+  if (face.distance > kStep || sine > kMaxFaceSine || face.normal.dot(features.normal) < 0.0) return s;
+  const AxisSpan span = collider.span(capsule, {face.distance, face.normal, face.point, s, face.face});
+  const double until = end > s ? span.s1 : span.s0;
+  const double rise = std::abs(face.normal.dot(along) * (until - s));
+  const double lifted = std::max(rise / -features.distance, sine / kMaxFaceSine);
+  return s + std::max(0.0, 1.0 - lifted) * (until - s);
+}
+
+/// Part of the axis over the surface at the features, beside an edge of a box or a cylinder on both sides.
+AxisSpan span_over(const PlacedCollider& collider, const Capsule& capsule, const ClosestFeatures& features) {
+  const AxisSpan span = collider.span(capsule, features);
+  if (!span.at_edge || features.distance >= 0.0) return span;
+  const AxisSpan faces{over_face(collider, capsule, features, 0.0),
+                       over_face(collider, capsule, features, 1.0), span.at_edge};
+  return faces.s1 > faces.s0 ? faces : span;
 }
 
 }  // namespace
@@ -109,7 +144,7 @@ void ContactFinder::find_touch(const TouchingPair& pair, double step, double mar
     features.distance =
         features.normal.dot(in_shape.axis_point(features.axis_parameter) - features.point) - in_shape.radius;
   }
-  const AxisSpan span = collider.span(in_shape, features);
+  const AxisSpan span = span_over(collider, in_shape, features);
   if (!collider.has_bodys_frame()) features = collider.to_body(features);
   touch(pair, features, span, before);
 }

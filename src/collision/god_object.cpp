@@ -150,20 +150,13 @@ void place(const Indentation& indentation, double s, const Contact* memory, Cont
   swing_back(indentation.pair, held ? memory : nullptr, contact);
 }
 
-/// Contact `point` of the pair, continued from its memory or new. `nearest` is the state of the pair: a
-/// second point of an old pair inherits it, so that it causes no new impact, and applies no force where its
-/// neighbour complies or is ignored.
-void begin_contact(const TouchingPair& pair, int point, const ContactMemory* memory,
-                   const ContactMemory* nearest, ContactMemory& contact) {
-  if (memory != nullptr) {
-    contact = *memory;
-    return;
-  }
-  contact = ContactMemory();
+/// Contact `point` of the pair, continued from its memory or new. A second point of an old pair continues the
+/// nearest one: it causes no new impact, applies no force where that complies or is ignored, and takes over a
+/// share of its friction along with its load.
+void begin_contact(const TouchingPair& pair, int point, const ContactMemory* memory, ContactMemory& contact) {
+  contact = memory != nullptr ? *memory : ContactMemory();
   contact.key = pair.key(point);
-  contact.struck = nearest != nullptr && nearest->struck;
-  contact.compliance = nearest != nullptr ? nearest->compliance : 0.0;
-  contact.ignored = nearest != nullptr ? nearest->ignored : pair.hand.emerged || pair.moving.appeared;
+  if (memory == nullptr) contact.ignored = pair.hand.emerged || pair.moving.appeared;
 }
 
 /// A hand or a body that appears beside the other, without overlap, touches it from then on.
@@ -197,15 +190,15 @@ int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features
                          indentation.reaches_surface(span.s0) && indentation.reaches_surface(span.s1);
   if (!lies_flat) {
     const int point = nearest != nullptr ? nearest->key.point : (features.axis_parameter > 0.5 ? 1 : 0);
-    begin_contact(pair, point, nearest, nullptr, now[0]);
+    begin_contact(pair, point, nearest, now[0]);
     if (!plane.entry) now[0].at_edge = span.at_edge && pair.refinements.edge_grip;
     place(indentation, plane.entry ? indentation.deepest_end() : features.axis_parameter, nearest, now[0]);
     keep_if_apart(nearest, now[0]);
     return 1;
   }
   for (const int point : {0, 1}) {
-    const Contact* from = memory.of_point[point];
-    begin_contact(pair, point, from, nearest, now[point]);
+    const Contact* from = memory.of_point[point] != nullptr ? memory.of_point[point] : nearest;
+    begin_contact(pair, point, from, now[point]);
     now[point].at_edge = false;
     place(indentation, point == 0 ? span.s0 : span.s1, from, now[point]);
     keep_if_apart(nearest, now[point]);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../math/registration.h"
+
 namespace mrhi {
 namespace {
 
@@ -82,6 +84,26 @@ bool still_closes(const HandTrack& track, const Grip& grip) {
   for (int finger = 0; finger < kFingers; ++finger)
     if (grip.takes_part(finger) && ClosingHand::closes(track, grip.by_palm, finger)) return true;
   return false;
+}
+
+/// Begins the wait for a hand that was lost, or that jumped, with the body at this pose in its palm.
+void lose(Nanoseconds now, const Pose& body_in_palm, Grip& grip) {
+  grip.lost = now;
+  grip.body_in_palm = body_in_palm;
+  grip.active = false;
+}
+
+/// Pose of the body in the palm by the grip's springs, as they are without extension.
+Pose grip_pose(const Grip& grip) {
+  const auto fit = registered(grip.in_body.data(), grip.in_hand.data(), kGripPoints);
+  if (!fit) return grip.in_palm;
+  return grip.in_palm * Pose{fit->to - fit->rotation * fit->from, Quaternion(fit->rotation)};
+}
+
+/// True if a hand that is seen again elsewhere, still closed, may yet return to the body.
+bool may_return(const HandTrack& track, const Grip& grip) {
+  return to_seconds(track.last_seen - *grip.lost) <= kMaxLoss &&
+         aperture(grip, track.current) - grip.min_aperture <= kMinRelease;
 }
 
 /// Copies the pads of the former fingers to a grip that is taken again. Those of new fingers start where they
@@ -170,12 +192,9 @@ void GraspAssist::lose_hands(Nanoseconds now, SimulationState& state) {
   const auto is_over = [&](Grip& grip) {
     const HandTrack& track = state.hands[grip.hand];
     if (track.active) return false;
-    if (!grip.lost) {
-      grip.lost = track.last_seen;
-      grip.body_in_palm =
-          track.current.palm.inverse() * operators_.in_hands_frame(grip.hand, grip.body, state);
-      grip.active = false;
-    }
+    if (!grip.lost)
+      lose(track.last_seen,
+           track.current.palm.inverse() * operators_.in_hands_frame(grip.hand, grip.body, state), grip);
     return grip.released || to_seconds(now - *grip.lost) > kMaxLoss;
   };
   state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), is_over), state.grips.end());
@@ -206,9 +225,13 @@ bool GraspAssist::resumes(const SimulationState& state, Grip& grip) const {
 /// lightly until it has left the body, or closes on it again.
 bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
-  if (grip.lost) return track.active && !resumes(state, grip);
+  if (grip.lost) return track.active && !resumes(state, grip) && !may_return(track, grip);
   const GraspMode mode = objects_.mode_of(grip.body);
-  if (!track.active || track.appeared || mode == GraspMode::free) return true;
+  if (!track.active || mode == GraspMode::free) return true;
+  if (track.appeared) {  // it jumped away, which is as good as a loss
+    lose(track.last_seen, grip_pose(grip), grip);
+    return grip.released;
+  }
   const TouchingSides touching = objects_.touching_sides(grip, state.contacts);
   if (mode == GraspMode::never) {
     grip.released = true;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "mr_hand_interaction/response/grip.h"
 #include "mr_hand_interaction/scene/scene.h"
@@ -488,8 +489,10 @@ TEST(GraspAssist, ends_within_a_millimetre_of_clearance) {
 }
 
 /// What a cube does whose hand is lost at 0.8 s for `loss` seconds, returns shifted by `shift` and still
-/// closed, and carries it by 10 cm along y: how far it is off the hand then.
-double off_after_a_loss(double loss, const Vector3& shift) {
+/// closed, and carries it by 10 cm along y: how far it is off the hand then. If `elsewhere` is set, the hand
+/// is not lost but that far away meanwhile.
+double off_after_a_loss(double loss, const Vector3& shift,
+                        const std::optional<Vector3>& elsewhere = std::nullopt) {
   constexpr double kRate = 115.0, kLost = 0.8;
   Simulation simulation(testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1)),
                         Configuration());
@@ -499,7 +502,10 @@ double off_after_a_loss(double loss, const Vector3& shift) {
     const bool back = t >= kLost + loss;
     way = 0.1 * testing::smooth(t - 2.2, 0.6) * Vector3::UnitY() + (back ? shift : Vector3::Zero());
     HandFrame frame{testing::at(t), {}};
-    if (t < kLost || back) frame.hands.push_back(reaching(std::min(t / 0.2, 1.0), 0.012, 0.0, way));
+    const bool seen = t < kLost || back;
+    if (seen || elsewhere)
+      frame.hands.push_back(
+          reaching(std::min(t / 0.2, 1.0), 0.012, 0.0, way + (seen ? Vector3::Zero() : *elsewhere)));
     simulation.advance(frame);
   }
   return (simulation.state().bodies[0].pose.position - (way - shift)).norm();
@@ -511,6 +517,12 @@ TEST(GraspAssist, a_hand_that_returns_as_it_held_holds_again) {
     EXPECT_LT(off_after_a_loss(loss, Vector3::Zero()), 0.005) << loss;
   EXPECT_GT(off_after_a_loss(0.5, Vector3(0, 0.015, 0.034)), 0.05) << "a hand that merely overlaps";
   EXPECT_GT(off_after_a_loss(1.5, Vector3::Zero()), 0.05) << "after too long";
+}
+
+TEST(GraspAssist, a_hand_that_the_tracker_shows_elsewhere_for_some_frames_holds_on) {
+  for (const double jump : {0.02, 0.1, 0.5})
+    EXPECT_LT(off_after_a_loss(jump, Vector3::Zero(), Vector3(0.3, 0, 0)), 0.005) << jump;
+  EXPECT_GT(off_after_a_loss(1.5, Vector3::Zero(), Vector3(0.3, 0, 0)), 0.05) << "for too long";
 }
 
 TEST(GraspAssist, takes_nothing_that_is_not_between_the_fingers) {

@@ -105,5 +105,41 @@ TEST(ImplicitCreep, a_rod_along_the_fingers_comes_to_rest_with_the_shipped_filte
   }
 }
 
+/// Largest speed of the surface of a body of 0.05 kg in a still hand, a second after thumb and index finger
+/// have closed across it, turned by `tilt` about z [m/s].
+double unrest(Body body, double half, double tilt, double gravity) {
+  Configuration configuration;  // as shipped
+  configuration.gravity = Vector3(0, 0, -gravity);
+  configuration.contact.grasp_assist = false;
+  body.material.stiffness = 2000.0;
+  Simulation simulation(scene_of(body), configuration);
+  const Pose turn{Vector3::Zero(), Quaternion(Eigen::AngleAxisd(tilt, Vector3::UnitZ()))};
+  double fastest = 0.0;
+  play(simulation, 0.0, 1.5, 120.0, [&](double t) {
+    const Twist twist = twist_of(simulation.scene().bodies[0], simulation.state().bodies[0]);
+    if (t > 1.0) fastest = std::max(fastest, twist.linear.norm() + twist.angular.norm() * half);
+    return moved(round_a_rod(half, 0.003, t), turn);
+  });
+  EXPECT_LT(simulation.state().bodies[0].pose.position.norm(), 0.01) << "held";
+  return fastest;
+}
+
+// A fingertip that hangs over both edges of a narrow face is nearest to one of them as soon as it tilts. If
+// it touched there alone, its load would leap from edge to edge, and such bodies rattle at some 0.1 m/s.
+TEST(ImplicitCreep, a_body_narrower_than_a_fingertip_comes_to_rest_across_it) {
+  for (const double half : {0.003, 0.005, 0.008, 0.01}) {
+    const Vector3 bar(half, half, 0.075);
+    const std::vector<std::pair<const char*, Body>> bodies{
+        {"bar", box_body(2.0 * bar, 0.05)}, {"cube", box_body(Vector3::Constant(2.0 * half), 0.05)}};
+    for (const auto& [name, body] : bodies) {
+      for (const double tilt : {0.0, 0.5, 3.0}) {
+        for (const double gravity : {0.0, kGravity})
+          EXPECT_LT(unrest(body, half, tilt * kDegrees, gravity), 1e-4)
+              << name << " of " << 2e3 * half << " mm, " << tilt << " degrees, " << gravity << " m/s^2";
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace mrhi
