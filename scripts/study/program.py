@@ -9,6 +9,7 @@ import signal
 import socket
 import stat
 import sys
+import threading
 import traceback
 import urllib.parse
 
@@ -19,6 +20,8 @@ MEBIBYTE = 1 << 20
 BEGINNING, END = 300, 200  # characters shown of a longer line
 TRIED = 'MR_HAND_PYTHONS_TRIED'  # Pythons that have started this script, by their paths
 _tried = os.environ.pop(TRIED, '').split(os.pathsep)
+if not hasattr(threading.Thread, 'isAlive'):  # Debian 11's rospy calls it as it ends; its Python has it no more
+    threading.Thread.isAlive = threading.Thread.is_alive
 
 
 class OneLineParser(argparse.ArgumentParser):

@@ -112,7 +112,10 @@ def _without_formulas(table):
     def shown(value):
         return "'" + value if isinstance(value, str) and begins_a_formula(value) else value
     texts = [column for column in table.columns if table[column].dtype == object]
-    return table.assign(**{column: table[column].map(shown) for column in texts})
+    safe = table.copy()
+    for column in texts:
+        safe[column] = table[column].map(shown)
+    return safe
 
 
 def _tidy(data):
