@@ -41,6 +41,7 @@ from waiting import wait_until  # noqa: E402
 
 TOKEN = "test"
 RATE = 60  # of the scripted hand, frames per second
+GAP = 0.1  # [s]
 CARRIED = 0.06  # m, of 0.08
 POST = ("<robot name='afloat'><link name='world'/>"
         "<link name='post'><collision><geometry><box size='0.1 0.1 0.1'/></geometry></collision></link>"
@@ -237,7 +238,12 @@ class WebTest(unittest.TestCase):
         for table in ("objects.csv", "contacts.csv", "events.csv"):
             self.assertEqual(self.text(clouds, table), self.text(arrays, table))
         events = [row["kind"] for row in csv.DictReader(self.text(clouds, "events.csv").splitlines())]
-        self.assertEqual([kind for kind in events if "GRASP" in kind], ["GRASP_BEGIN", "GRASP_END"])
+        # One grasp, and at most one more for each time that a busy machine's browser sent no hand for longer than GAP.
+        stamps = [cloud.header.stamp.to_sec() for _, cloud in self.played]
+        stalls = sum(after - before > GAP for before, after in zip(stamps, stamps[1:]))
+        grasps = [kind for kind in events if "GRASP" in kind]
+        self.assertEqual(grasps, ["GRASP_BEGIN", "GRASP_END"] * (len(grasps) // 2))
+        self.assertIn(len(grasps) // 2, range(1, 2 + stalls))
         heights = [float(row["pz"]) for row in csv.DictReader(self.text(clouds, "objects.csv").splitlines())]
         self.assertGreater(max(heights) - heights[0], CARRIED)
 
