@@ -28,6 +28,7 @@ class PlacedCollider {
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const {
     return mesh_ != nullptr ? mesh_->span(capsule, features) : contact_span(capsule, shape_, features);
   }
+
   /// Transforms between the body's frame and the shape's.
   ///     x_shape = R^T (x_body - t),   n_body = R n_shape;   lengths, s and distance are the same in both
   /// Shapes that have the body's frame skip the rotation, which would only add rounding.

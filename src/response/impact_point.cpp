@@ -25,42 +25,11 @@ double time_to_reach(const Vector3& apart, const Vector3& velocity, double dista
   return outside / (closing + std::sqrt(discriminant));
 }
 
-// Partner's velocity() and apply(), inline for relax(), which is most of an impact's cost. Only a free body
-// has a state: neither a hand nor a body with joints.
-//
-//     v + w x r (Eq. 7), or J u. The hand's own velocity is `hand_velocity`.
-[[gnu::always_inline]] inline Vector3 velocity_of(const ImpactPoint::Partner& partner) {
-  if (partner.state != nullptr)
-    return partner.inverse_mass * partner.state->linear_momentum +
-           (partner.inverse_inertia * partner.state->angular_momentum).cross(partner.arm);
-  if (partner.joints != nullptr) return partner.joints->jacobian * *partner.joints->velocity;
-  return partner.recoil != nullptr ? *partner.recoil : Vector3(Vector3::Zero());
-}
-
-[[gnu::always_inline]] inline void apply_to(const ImpactPoint::Partner& partner, const Vector3& impulse) {
-  if (partner.state != nullptr) {
-    partner.state->linear_momentum += impulse;
-    partner.state->angular_momentum += partner.arm.cross(impulse);
-  } else if (partner.joints != nullptr) {
-    partner.joints->velocity->noalias() += partner.joints->response * impulse;
-  } else if (partner.recoil != nullptr) {
-    *partner.recoil += partner.inverse_mass * impulse;
-  }
-}
-
 }  // namespace
 
 Vector3 ImpactPoint::Partner::velocity_of_centre() const {
   if (state == nullptr) return Vector3::Zero();
   return inverse_mass * state->linear_momentum;
-}
-
-Vector3 ImpactPoint::Partner::velocity() const {
-  return velocity_of(*this);
-}
-
-void ImpactPoint::Partner::apply(const Vector3& impulse) {
-  apply_to(*this, impulse);
 }
 
 // A capsule of the hand is a point mass. 1/m is 0 for the paper's hand and for fixtures.
@@ -166,7 +135,7 @@ void ImpactPoint::begin() {
 // impulse, w + (j' - j) K n, and both directions at once. Limited separately they would form a square, with
 // friction 1.4 times too strong at its corners. Impacts use static friction, the limit of Coulomb's law.
 double ImpactPoint::relax() {
-  Vector3 velocity = hand_velocity + velocity_of(a) - velocity_of(b);
+  Vector3 velocity = relative_velocity();
   const double change =
       std::max(0.0, normal_impulse + normal_mass * (target - normal.dot(velocity))) - normal_impulse;
   normal_impulse += change;
@@ -181,8 +150,8 @@ double ImpactPoint::relax() {
     impulse += unlimited - friction_impulse;
     friction_impulse = unlimited;
   }
-  apply_to(a, -impulse);
-  apply_to(b, impulse);
+  a.apply(-impulse);
+  b.apply(impulse);
   return normal_mass > 0.0 ? error / normal_mass : 0.0;
 }
 

@@ -44,8 +44,27 @@ struct ImpactPoint {
     Vector3 arm;                // from the centre of mass [m]
 
     Vector3 velocity_of_centre() const;
-    Vector3 velocity() const;
-    void apply(const Vector3& impulse);  // [N s]
+    // Inline for relax(), which is most of an impact's cost. Only a free body has a state: neither a hand nor
+    // a body with joints.
+    //
+    //     v + w x r (Eq. 7), or J u. The hand's own velocity is `hand_velocity`.
+    [[gnu::always_inline]] Vector3 velocity() const {
+      if (state != nullptr)
+        return inverse_mass * state->linear_momentum + (inverse_inertia * state->angular_momentum).cross(arm);
+      if (joints != nullptr) return joints->jacobian * *joints->velocity;
+      return recoil != nullptr ? *recoil : Vector3(Vector3::Zero());
+    }
+    /// An impulse [N s].
+    [[gnu::always_inline]] void apply(const Vector3& impulse) {
+      if (state != nullptr) {
+        state->linear_momentum += impulse;
+        state->angular_momentum += arm.cross(impulse);
+      } else if (joints != nullptr) {
+        joints->velocity->noalias() += joints->response * impulse;
+      } else if (recoil != nullptr) {
+        *recoil += inverse_mass * impulse;
+      }
+    }
     Matrix3 inverse_effective_mass() const;
   };
   /// The second surface is that of b. With joints, b stands for the relative motion of both.

@@ -116,8 +116,8 @@ TEST(Haptics, of_each_step_are_what_changes_the_objects_momentum) {
       const Vector3 given = kStep * sum_over_phalanges(message, &PhalanxHaptics::force) +
                             sum_over_phalanges(message, &PhalanxHaptics::impulse) +
                             kStep * pinched.body().mass * gravity;
-      // Newton's second law, as far as the step is solved: where it starts well, Newton's method may leave
-      // 1e-4 of the forces, here 6.4 N on each side. Measured 0.34 mN.
+      // Newton's second law, to the error that the solver accepts after a good warm start: 1e-4 of the
+      // forces, here 6.4 N on each side. Measured 0.34 mN.
       EXPECT_LT((momentum - before - given).norm(), 6.4e-4 * kStep);
       ++felt;
     }
