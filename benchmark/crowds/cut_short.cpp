@@ -15,9 +15,9 @@
 #include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/simulation_state.h"
 #include "response/contact_step.h"
+#include "response/gauss_seidel_solver.h"
 #include "response/impact_solver.h"
 #include "response/islands.h"
-#include "response/large_island_solver.h"
 #include "scenes.h"
 #include "support/fixtures.h"
 
@@ -143,7 +143,7 @@ class Falling {
   SimulationState state_;
   std::vector<Event> events_;
   const std::unique_ptr<ContactModel> model_;
-  LargeIslandSolver problem_;
+  GaussSeidelSolver problem_;
   StepChanges changes_;
   std::vector<char> asleep_;
   std::vector<BodyState> bodies_;

@@ -10,7 +10,7 @@ namespace mrhi {
 using Motion6 = Eigen::Matrix<double, 6, 1>;
 using Mobility6 = Eigen::Matrix<double, 6, 6>;
 
-/// A body of a large island.
+/// A body of an island of several.
 struct PatchBody {
   Motion6 motion;  // of the iterate, world axes
   double inverse_mass;

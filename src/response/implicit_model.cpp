@@ -5,14 +5,6 @@
 #include "finger_limits.h"
 
 namespace mrhi {
-namespace {
-
-/// Largest number of bodies of an island that Newton's method solves. In larger ones, where contacts opened
-/// and slipped, it did not converge in three steps of four: after 20 directions and 100 evaluations
-/// velocities were off by a quarter to all of the contacts' effect.
-constexpr std::size_t kMaxExact = 4;
-
-}  // namespace
 
 // Eqs. 9 to 15 and then Eqs. 16 to 20, both at the end of the step. The order matters: impacts use the
 // velocities at the start of the step, and springs those after the impacts.
@@ -26,7 +18,7 @@ void ImplicitModel::respond(ContactStep& step) {
 }
 
 // Limits that depend on the whole hand or on the last step's stretch are set first and held through the step.
-// The large-island solver starts from the last step's forces.
+// The solver of several bodies starts from the last step's forces.
 void ImplicitModel::begin_contacts(ContactStep& step) {
   share_strength(configuration_.hand, step.contacts);
   if (configuration_.edge_grip) grip_edges(step);
@@ -35,7 +27,7 @@ void ImplicitModel::begin_contacts(ContactStep& step) {
     last_forces_.push_back(contact.force);
     contact.force.setZero();
   }
-  // Only islands with contacts between bodies are large.
+  // Only contacts between bodies make islands of several.
   if (!last_forces_.empty())
     for (const Contact& contact : step.contacts) last_forces_.push_back(contact.force);
   for (Contact& contact : step.contacts) contact.force.setZero();
@@ -74,18 +66,16 @@ void ImplicitModel::solve_islands(ContactStep& step) {
   }
 }
 
-/// Returns true if any force acts. The large-island solver takes islands whose contacts keep opening and
-/// slipping.
+/// Returns true if any force acts. Newton's method takes one body alone: where contacts between free bodies
+/// opened and slipped, it did not converge in two steps of three.
 bool ImplicitModel::solve(ContactStep& step, const Island& island) {
-  const std::size_t bodies = island.bodies.size();
-  if (bodies > kMaxExact) return solve_large(step, island);
+  if (island.bodies.size() > 1) return solve_several(step, island);
   problem_.begin(step, island, configuration_);
   bool agree = problem_.solve();
   // The operator receives the contacts' forces, so the momenta must follow from these.
   const bool by_forces = step.operators != nullptr && !reacts_by_momentum(step, island.bodies.begin()->body);
-  if (!agree && (bodies > 1 || by_forces)) {
+  if (!agree && by_forces) {
     problem_.evaluate(true);  // at the final velocity
-    if (bodies > 1 && !problem_.nearly_agrees()) return solve_large(step, island);
     agree = true;
   }
   const bool acts = problem_.scale() > 0.0;
@@ -93,11 +83,11 @@ bool ImplicitModel::solve(ContactStep& step, const Island& island) {
   return acts;
 }
 
-bool ImplicitModel::solve_large(ContactStep& step, const Island& island) {
-  large_.begin(step, island, configuration_, last_forces_);
-  large_.solve(step);
-  const bool acts = large_.acts();
-  if (acts) large_.finish(step, island);
+bool ImplicitModel::solve_several(ContactStep& step, const Island& island) {
+  several_.begin(step, island, configuration_, last_forces_);
+  several_.solve(step);
+  const bool acts = several_.acts();
+  if (acts) several_.finish(step, island);
   return acts;
 }
 

@@ -1,16 +1,16 @@
 #pragma once
 
+#include "gauss_seidel_solver.h"
 #include "impact_solver.h"
 #include "island_problem.h"
-#include "large_island_solver.h"
 
 namespace mrhi {
 
 /// The paper's two phases solved at the end of the step: Newton's impact law where surfaces collide, and
 /// god-object springs with Coulomb friction and soft-finger torsion as functions of the resulting velocity.
-/// Solves one convex problem for each island, M (v - v*) = h sum J' f(v), by Newton's method. Release,
-/// damping, torsion and the lever arm of deep contacts are additions: it is not the limit of the seed model
-/// for small steps. See docs/contact.md.
+/// Solves one problem for each island, M (v - v*) = h sum J' f(v): of one body or a linkage by Newton's
+/// method, of several bodies by Gauss-Seidel sweeps. Release, damping, torsion and the lever arm of deep
+/// contacts are additions: it is not the limit of the seed model for small steps. See docs/contact.md.
 class ImplicitModel : public ContactModel {
  public:
   explicit ImplicitModel(const ContactConfiguration& configuration) : configuration_(configuration) {}
@@ -28,9 +28,9 @@ class ImplicitModel : public ContactModel {
 
  private:
   bool solve(ContactStep& step, const Island& island);
-  bool solve_large(ContactStep& step, const Island& island);
+  bool solve_several(ContactStep& step, const Island& island);
 
-  LargeIslandSolver large_;
+  GaussSeidelSolver several_;
   std::vector<Vector3> last_forces_;  // of contacts between bodies, then with hands [N]
 
  protected:

@@ -30,7 +30,7 @@ void IslandProblem::begin(const ContactStep& step, const Island& island,
                           const ContactConfiguration& configuration, const std::vector<Linkage>& linkages,
                           std::vector<LinkageMotion>& motions, const std::vector<JointState>& joints,
                           double usual) {
-  begin_bodies(island.bodies.size(), true);
+  begin(island.bodies.size(), true);
   step_ = step.step;
   usual_ = usual;
   scene_ = &step.scene;

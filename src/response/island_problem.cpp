@@ -83,33 +83,27 @@ void add_slope(const SpringContact& row, const Symmetric3& s, const Triple& r, L
 
 void IslandProblem::begin(const ContactStep& step, const Island& island,
                           const ContactConfiguration& configuration) {
-  begin_bodies(island.bodies.size(), false);
+  begin(1, false);
   step_ = step.step;
-  for (const IslandBody& body : island.bodies) begin_body(step, body.body);
+  const std::size_t body = island.bodies.begin()->body;
+  begin_body(step, body);
   make_rows(step, island, configuration);
-  if (several()) {
-    // Problems that converge do so in one or two iterations. The large-island solver takes the others.
-    effort_.iterations = 6, effort_.limits = 0, effort_.anew = false;
-  } else if (step.operators != nullptr && island.links.size() == 0) {
-    const std::size_t body = masses_[0].body;
-    const int op = coupled_operator(step, island);
-    if (op >= 0) couple(step, step.scene.bodies[body], step.bodies[body], static_cast<std::size_t>(op));
-  }
+  if (step.operators == nullptr || island.links.size() > 0) return;
+  const int op = coupled_operator(step, island);
+  if (op >= 0) couple(step, step.scene.bodies[body], step.bodies[body], static_cast<std::size_t>(op));
 }
 
-void IslandProblem::begin_bodies(std::size_t bodies, bool in_joints) {
+void IslandProblem::begin(std::size_t bodies, bool in_joints) {
   effort_ = Effort();
   in_joints_ = in_joints;
   coupled_ = false;
   carrier_ = Twist();
   unseen_ = std::numeric_limits<double>::infinity();
-  masses_.clear();
   wrenches_.resize(bodies);
   if (in_joints) return;
-  const auto unknowns = static_cast<Eigen::Index>(6 * bodies);
   for (Vector* vector :
        {&start_, &free_, &velocity_, &direction_, &gradient_, &weights_, &change_, &momentum_})
-    vector->resize(unknowns);
+    vector->resize(6);
 }
 
 void IslandProblem::make_rows(const ContactStep& step, const Island& island,
@@ -125,23 +119,21 @@ void IslandProblem::make_rows(const ContactStep& step, const Island& island,
 // constant L (free_flight.h).
 //
 //     u* = (p / m + h g, I^-1 L)          u_0 = u* + h a,     a = (u - u*) / h of the last step
-//     unseen = m (1 nm) / h, of the lightest body
+//     unseen = m (1 nm) / h
 void IslandProblem::begin_body(const ContactStep& step, std::size_t index) {
   const Body& body = step.scene.bodies[index];
   const BodyState& state = step.bodies[index];
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
-  const Eigen::Index at = 6 * static_cast<Eigen::Index>(masses_.size());
-  masses_.push_back({index, body.mass, rotation * body.inertia * rotation.transpose()});
-  unseen_ = std::min(unseen_, kPositionTolerance / step_ * body.mass);
-  start_.segment<3>(at) = state.linear_momentum / body.mass;
-  start_.segment<3>(at + 3) =
-      rotation * (body.inverse_inertia * (rotation.transpose() * state.angular_momentum));
-  free_.segment<6>(at) = start_.segment<6>(at);
-  free_.segment<3>(at) += step_ * step.gravity;
-  velocity_.segment<3>(at) = free_.segment<3>(at) + step_ * state.pushed.linear;
-  velocity_.segment<3>(at + 3) = free_.segment<3>(at + 3) + step_ * state.pushed.angular;
-  weights_.segment<3>(at).setOnes();
-  weights_.segment<3>(at + 3).setConstant(3.0 * body.mass / body.inertia.trace());
+  one_ = {index, body.mass, rotation * body.inertia * rotation.transpose()};
+  unseen_ = kPositionTolerance / step_ * body.mass;
+  start_.head<3>() = state.linear_momentum / body.mass;
+  start_.tail<3>() = rotation * (body.inverse_inertia * (rotation.transpose() * state.angular_momentum));
+  free_ = start_;
+  free_.head<3>() += step_ * step.gravity;
+  velocity_.head<3>() = free_.head<3>() + step_ * state.pushed.linear;
+  velocity_.tail<3>() = free_.tail<3>() + step_ * state.pushed.angular;
+  weights_.head<3>().setOnes();
+  weights_.tail<3>().setConstant(3.0 * body.mass / body.inertia.trace());
 }
 
 /// Returns the operator with whom the island's body is solved: that of all hands that act on it, if the body
@@ -207,7 +199,7 @@ void IslandProblem::couple(const ContactStep& step, const Body& body, const Body
 void IslandProblem::begin_operator(const ContactStep& step, std::size_t body,
                                    const std::vector<Contact*>& contacts, const Twist& carrier,
                                    const ContactConfiguration& configuration) {
-  begin_bodies(1, false);
+  begin(1, false);
   step_ = step.step;
   begin_body(step, body);
   rows_.resize(contacts.size());
@@ -239,18 +231,6 @@ void IslandProblem::begin_operator(const ContactStep& step, std::size_t body,
   }
 }
 
-/// True if the contact is open at this velocity, d+ = d - tau u.n <= 0, and so has no force; respond() would
-/// find the same at a higher cost. Two cases need respond(): a bond, which acts without a normal force, and
-/// held limits, under which friction acts on after the normal force has vanished.
-bool IslandProblem::stays_open(SpringContact& row, const Triple& velocity, bool renew_limits) {
-  Spring& spring = row.spring;
-  if (spring.bond > 0.0 || spring.depth > spring.ahead * velocity.dot(spring.normal)) return false;
-  if (!renew_limits && (spring.slip_limit > 0.0 || spring.twist_limit > 0.0)) return false;
-  spring.slip_limit = spring.twist_limit = 0.0;
-  row.response = {};
-  return true;
-}
-
 /// Backward Euler. The gradient is the residual impulse of M (u - u*) = h J' f(J u). While friction's limits
 /// are held it is also the gradient of energy(). A row applies f to its body 2 and -f to body 1:
 ///
@@ -267,7 +247,6 @@ void IslandProblem::evaluate(bool renew_limits) {
     Triple velocity;
     double spin;
     relative_motion(row, velocity, spin);
-    if (several() && stays_open(row, velocity, renew_limits)) continue;
     SpringResponse& response = row.response;
     row.spring.respond(velocity, spin, renew_limits, response);
     load += response.normal_force + row.spring.bond;
@@ -303,85 +282,35 @@ void IslandProblem::multiply_mass(const Vector& by, Vector& result) const {
     result.noalias() = mass_ * by;
     return;
   }
-  Eigen::Index at = 0;
-  for (const BodyMass& body : masses_) {
-    result.segment<3>(at) = body.mass * by.segment<3>(at);
-    result.segment<3>(at + 3) = body.inertia * by.segment<3>(at + 3);
-    at += 6;
-  }
+  result.head<3>() = one_.mass * by.head<3>();
+  result.tail<3>() = one_.inertia * by.tail<3>();
 }
 
-/// H = M + h sum J' S J: positive definite, as no row's S has a negative eigenvalue. A row adds to the
-/// diagonal blocks of its two bodies, and subtracts from the block between them. For one body, H has factors
-/// of fixed size. For more it is dense: in so small an island most bodies touch each other.
+/// H = M + h sum J' S J: positive definite, as no row's S has a negative eigenvalue.
 void IslandProblem::factorise() {
   if (in_joints_) return factorise_joints();
-  slopes_.assign(masses_.size(), Lower6{});
-  if (several()) hessian_.setZero(velocity_.size(), velocity_.size());
+  Lower6 sum{};
   for (const SpringContact& row : rows_) {
     if (row.response.normal_slope <= 0.0 && row.response.tangential_slope <= 0.0) continue;
-    const Symmetric3 s = point_slope(row);
-    if (row.b != SpringContact::kNone) add_slope(row, s, row.arm, slopes_[static_cast<std::size_t>(row.b)]);
-    if (row.a == SpringContact::kNone) continue;
-    add_slope(row, s, row.arm_a, slopes_[static_cast<std::size_t>(row.a)]);
-    if (row.b != SpringContact::kNone) couple_slopes(row, s);
+    add_slope(row, point_slope(row), row.b != SpringContact::kNone ? row.arm : row.arm_a, sum);
   }
-  for (std::size_t i = 0; i < masses_.size(); ++i) {
-    Lower6& slope = slopes_[i];
-    const auto entry = [&slope](int row, int column) -> double& {
-      return slope[static_cast<std::size_t>(Cholesky6::at(row, column))];
-    };
-    for (double& one : slope) one *= step_;
-    for (int row = 0; coupled_ && row < 6; ++row) {
-      for (int column = 0; column <= row; ++column) entry(row, column) += mass_(row, column);
-    }
-    for (int row = 0; !coupled_ && row < 3; ++row) {
-      entry(row, row) += masses_[i].mass;
-      for (int column = 0; column <= row; ++column)
-        entry(3 + row, 3 + column) += masses_[i].inertia(row, column);
-    }
-    if (!several()) continue;
-    auto block = hessian_.block<6, 6>(static_cast<Eigen::Index>(6 * i), static_cast<Eigen::Index>(6 * i));
-#pragma GCC unroll 6
-    for (int row = 0; row < 6; ++row) {
-      for (int column = 0; column <= row; ++column) block(row, column) = entry(row, column);
-    }
+  for (double& one : sum) one *= step_;
+  const auto entry = [&sum](int row, int column) -> double& {
+    return sum[static_cast<std::size_t>(Cholesky6::at(row, column))];
+  };
+  for (int row = 0; coupled_ && row < 6; ++row) {
+    for (int column = 0; column <= row; ++column) entry(row, column) += mass_(row, column);
   }
-  if (several())
-    factors_.compute(hessian_);
-  else
-    factors_of_one_.factorise(slopes_[0]);
-}
-
-// H_ba -= h J_b' S J_a, with rows of b, the later body, and columns of a:
-//
-//     J_b' S J_a = (  S      (Y S)'            )      X, Y the torques of b and a, S = S'
-//                  (  X S    X S Y' + s_T n n' )
-void IslandProblem::couple_slopes(const SpringContact& row, const Symmetric3& s) {
-  const SpringResponse& response = row.response;
-  const Triple& n = row.spring.normal;
-  TorqueSlope x(s, row.arm), y(s, row.arm_a);
-  if (row.tilts) x.tilt(response.normal_slope, row.tilt, n), y.tilt(response.normal_slope, row.tilt, n);
-  auto block = hessian_.block<6, 6>(6 * row.b, 6 * row.a);
-  block.topLeftCorner<3, 3>() -= step_ * s.matrix();
-  const Triple *const of_b[] = {&x.x, &x.y, &x.z}, *const of_a[] = {&y.x, &y.y, &y.z};
-  for (int k = 0; k < 3; ++k) {
-    block.block<3, 1>(3, k) -= step_ * vector(*of_b[k]);
-    block.block<1, 3>(k, 3) -= step_ * vector(*of_a[k]).transpose();
+  for (int row = 0; !coupled_ && row < 3; ++row) {
+    entry(row, row) += one_.mass;
+    for (int column = 0; column <= row; ++column) entry(3 + row, 3 + column) += one_.inertia(row, column);
   }
-  // X S Y' = X (Y S)', whose column k is b x q + (n.q) t, with q the k-th row of Y S.
-  const Triple rows[] = {{y.x.x, y.y.x, y.z.x}, {y.x.y, y.y.y, y.z.y}, {y.x.z, y.y.z, y.z.z}};
-  const double twist[] = {response.torque_slope * n.x, response.torque_slope * n.y,
-                          response.torque_slope * n.z};
-  for (int k = 0; k < 3; ++k) {
-    const Triple turn = row.arm.cross(rows[k]) + n.dot(rows[k]) * row.tilt + twist[k] * n;
-    block.block<3, 1>(3, 3 + k) -= step_ * vector(turn);
-  }
+  factors_of_one_.factorise(sum);
 }
 
 void IslandProblem::find_direction() {
   direction_ = -gradient_;
-  if (several() || in_joints_) {
+  if (in_joints_) {
     factors_.solveInPlace(direction_);
   } else {
     direction_ = factors_of_one_.solve(direction_);
@@ -418,20 +347,16 @@ bool IslandProblem::nearly_agrees() const {
 
 // Momenta consistent with the forces are M u* + h J' f: one body gains what the other loses, however far u
 // has converged. If a body is solved with its operator, this always holds, as no other momenta are known.
-void IslandProblem::finish_bodies(bool agree, ContactStep& step) const {
-  for (std::size_t i = 0; i < masses_.size(); ++i) {
-    const BodyMass& body = masses_[i];
-    const auto at = static_cast<Eigen::Index>(6 * i);
-    BodyState& state = step.bodies[body.body];
-    state.pushed.linear = (velocity_.segment<3>(at) - free_.segment<3>(at)) / step_;
-    state.pushed.angular = (velocity_.segment<3>(at + 3) - free_.segment<3>(at + 3)) / step_;
-    if (agree || coupled_) {
-      state.linear_momentum += step_ * (vector(wrenches_[i].force) + body.mass * step.gravity);
-      state.angular_momentum += step_ * vector(wrenches_[i].torque);
-    } else {
-      state.linear_momentum = body.mass * velocity_.segment<3>(at);
-      state.angular_momentum = body.inertia * velocity_.segment<3>(at + 3);
-    }
+void IslandProblem::finish_body(bool agree, ContactStep& step) const {
+  BodyState& state = step.bodies[one_.index];
+  state.pushed.linear = (velocity_.head<3>() - free_.head<3>()) / step_;
+  state.pushed.angular = (velocity_.tail<3>() - free_.tail<3>()) / step_;
+  if (agree || coupled_) {
+    state.linear_momentum += step_ * (vector(wrenches_[0].force) + one_.mass * step.gravity);
+    state.angular_momentum += step_ * vector(wrenches_[0].torque);
+  } else {
+    state.linear_momentum = one_.mass * velocity_.head<3>();
+    state.angular_momentum = one_.inertia * velocity_.tail<3>();
   }
 }
 
@@ -441,12 +366,12 @@ void IslandProblem::settle_rows(ContactStep& step, const Island& island) const {
 }
 
 void IslandProblem::finish(bool agree, ContactStep& step, const Island& island) {
-  finish_bodies(agree, step);
+  finish_body(agree, step);
   settle_rows(step, island);
 }
 
 void IslandProblem::finish_operator(ContactStep& step, const std::vector<Contact*>& contacts) {
-  finish_bodies(true, step);
+  finish_body(true, step);
   for (std::size_t i = 0; i < contacts.size(); ++i) settle(step, rows_[i], *contacts[i]);
 }
 

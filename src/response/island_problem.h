@@ -33,13 +33,14 @@ Symmetric3 point_slope(const SpringContact& row);
 /// `arm`.
 void add_slope(const SpringContact& row, const Symmetric3& s, const Triple& arm, Lower6& sum);
 
-/// The contact problem of one island at the end of the step: M (u - u*) = h J' f(J u), with f the springs'
-/// forces and u* the velocities under gravity alone. The unknowns u are six for each body, linear and angular
-/// in world axes. In an island with joints they are the joints' velocities, and six for each body without a
-/// joint. Solved by Newton's method. Keeps its memory from island to island.
+/// The contact problem of one body, or of an island with joints, at the end of the step: M (u - u*) = h J'
+/// f(J u), with f the springs' forces and u* the velocities under gravity alone. The unknowns u are the
+/// body's linear and angular velocity in world axes. In an island with joints they are the joints'
+/// velocities, and six for each body without a joint. Solved by Newton's method. Keeps its memory from island
+/// to island.
 class IslandProblem {
  public:
-  /// An island without joints.
+  /// An island of one body.
   void begin(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
   /// An island with joints. `linkages` and their placed motions are those of the whole scene. `usual`: the
   /// regular step; the last one of a frame may be shorter [s].
@@ -58,9 +59,9 @@ class IslandProblem {
   double scale() const { return scale_; }
   /// True if the error is small enough to take momenta from the forces.
   bool nearly_agrees() const;
-  /// Velocity of the first body of an island without joints, at the end of the step.
+  /// Velocity of the one body at the end of the step.
   Twist velocity() const {
-    return {velocity_.head<3>() + carrier_.linear, velocity_.segment<3>(3) + carrier_.angular};
+    return {velocity_.head<3>() + carrier_.linear, velocity_.tail<3>() + carrier_.angular};
   }
 
   /// Writes the contacts, and the bodies' momenta at the end of the step: from the forces if the velocity is
@@ -97,8 +98,8 @@ class IslandProblem {
   struct Wrench {
     Triple force, torque;  // [N], [N m]
   };
-  struct BodyMass {
-    std::size_t body;  // in Scene::bodies
+  struct OneBody {
+    std::size_t index;  // in Scene::bodies
     double mass;
     Matrix3 inertia;  // world axes
   };
@@ -130,21 +131,18 @@ class IslandProblem {
   double descent() const { return gradient_.dot(direction_); }
 
   void begin_body(const ContactStep& step, std::size_t index);
-  void begin_bodies(std::size_t bodies, bool in_joints);
+  void begin(std::size_t bodies, bool in_joints);
   void make_rows(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
   int coupled_operator(const ContactStep& step, const Island& island) const;
   void couple(const ContactStep& step, const Body& body, const BodyState& state, std::size_t op);
-  void finish_bodies(bool agree, ContactStep& step) const;
+  void finish_body(bool agree, ContactStep& step) const;
   void settle_rows(ContactStep& step, const Island& island) const;
 
-  bool several() const { return masses_.size() > 1; }
   const Vector& body_velocity() const { return in_joints_ ? body_velocity_ : velocity_; }
   Triple linear_velocity(int number) const { return triple(body_velocity().segment<3>(6 * number)); }
   Triple angular_velocity(int number) const { return triple(body_velocity().segment<3>(6 * number + 3)); }
   void relative_motion(const SpringContact& row, Triple& velocity, double& spin) const;
-  static bool stays_open(SpringContact& row, const Triple& velocity, bool renew_limits);
   void multiply_mass(const Vector& by, Vector& result) const;
-  void couple_slopes(const SpringContact& row, const Symmetric3& s);
 
   // Joints (island_joints.cpp).
   Effort effort_in_joints() const;
@@ -160,16 +158,15 @@ class IslandProblem {
 
   Effort effort_;
   double step_ = 0.0, scale_ = 0.0;
-  double unseen_ = 0.0;                     // an impulse whose effect is invisible [N s]
+  double unseen_ = 0.0;                     // an impulse of the one body whose effect is invisible [N s]
   std::vector<SpringContact> rows_;         // of hands, grips and contacts between bodies, in this order
-  std::vector<BodyMass> masses_;            // by number
-  std::vector<Wrench> wrenches_;            // likewise, of the last iterate
+  std::vector<Wrench> wrenches_;            // by body's number, of the last iterate
+  OneBody one_;                             // in an island without joints
   Vector start_, free_;                     // u at the start of the step, and u*
   Vector velocity_, direction_, gradient_;  // u of the iterate, Newton step, and residual impulse
   Vector weights_;  // of squared components of the gradient: 1, or 1/k^2 for torques [1/m^2]
   Vector change_, momentum_;
   Cholesky6 factors_of_one_;
-  std::vector<Lower6> slopes_;
   Matrix hessian_;
   Eigen::LLT<Matrix> factors_;
 

@@ -27,9 +27,6 @@ constexpr double kLastStepError = 1e-5;
 constexpr double kFirstStepError = 1e-4;
 /// Error, over scale(), below which energy differences are rounding and a line search is useless.
 constexpr double kEnergyPrecision = 1e-5;
-/// Error of several bodies, over scale(), above which their contacts keep opening after the unchecked steps:
-/// 1.5 to 5 % of such problems would converge in further steps.
-constexpr double kKeepsOpening = 0.3;
 /// Error, over scale(), that is rounding of its terms.
 constexpr double kRoundingError = 1e-12;
 
@@ -37,7 +34,6 @@ constexpr double kRoundingError = 1e-12;
 
 // The last step of a single body is not verified: no momentum is exchanged that could be lost by it.
 bool IslandProblem::solve() {
-  const bool trusts_last_step = !several() && !in_joints_;
   double last = 0.0;
   for (int i = 0; i < effort_.iterations; ++i) {
     evaluate(true);
@@ -46,12 +42,10 @@ bool IslandProblem::solve() {
     const bool near = i > 0 && error < kFastRatio * kFastRatio * last;
     last = error;
     const bool last_step = near ? error_below(kLastStepError) : i == 0 && error_below(kFirstStepError);
-    if (trusts_last_step && last_step) {
+    if (!in_joints_ && last_step) {
       advance(false, near);
       return false;
     }
-    // The large-island solver takes over.
-    if (i == effort_.unchecked && effort_.limits == 0 && !error_below(kKeepsOpening)) return false;
     advance(i >= effort_.unchecked && !near, near);
   }
   solve_with_held_limits();

@@ -150,7 +150,8 @@ TEST(Crowds, a_block_of_touching_cubes_stays_where_it_is) {
     const Vector3 moved =
         simulation.state().bodies[b].pose.position - simulation.scene().bodies[b].start.position;
     EXPECT_LT(moved.norm(), 1e-6) << b;  // springs of 1e7 N/m give by 0.1 um under four cubes
-    EXPECT_LT(testing::object_twist(simulation, b).linear.norm(), 1e-6) << b;
+    // Sweeps end at a millionth of the speed that the contacts give.
+    EXPECT_LT(testing::object_twist(simulation, b).linear.norm(), 2e-6) << b;
   }
 }
 

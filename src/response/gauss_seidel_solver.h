@@ -7,13 +7,13 @@
 
 namespace mrhi {
 
-/// Solves the contact problem of a large island: the law of IslandProblem, but with Coulomb's limits by the
-/// normal force of the same iterate. The unknowns are the contacts' impulses. Symmetric sweeps solve each
-/// contact with all others fixed (nonlinear Gauss-Seidel: Jourdan, Alart & Jean 1998), accelerated as
-/// conjugate gradients (Silcowitz, Niebe & Erleben 2010). They end when no body's velocity changes visibly,
-/// or with the step's budget. The last step's contact forces are the warm start. Impulses act on both bodies,
-/// so momentum is conserved at any iterate. Cost is linear in the contacts. Keeps its memory.
-class LargeIslandSolver {
+/// Solves the contact problem of an island of several bodies: the law of IslandProblem, but with Coulomb's
+/// limits by the normal force of the same iterate. The unknowns are the contacts' impulses. Symmetric sweeps
+/// solve each contact with all others fixed (nonlinear Gauss-Seidel: Jourdan, Alart & Jean 1998), accelerated
+/// as conjugate gradients (Silcowitz, Niebe & Erleben 2010). They end when no body's velocity changes
+/// visibly, or with the step's budget. The last step's contact forces are the warm start. Impulses act on
+/// both bodies, so momentum is conserved at any iterate. Cost is linear in the contacts. Keeps its memory.
+class GaussSeidelSolver {
  public:
   /// `last_forces`: in the last step, of the step's contacts between bodies, then of those with hands [N];
   /// must outlive solve().
