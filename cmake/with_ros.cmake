@@ -6,6 +6,7 @@ target_include_directories(${PROJECT_NAME}_ros PRIVATE ${CMAKE_CURRENT_BINARY_DI
 target_include_directories(${PROJECT_NAME}_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(${PROJECT_NAME}_ros PUBLIC ${PROJECT_NAME}_core ${catkin_LIBRARIES} PRIVATE yaml-cpp)
 precompile(${PROJECT_NAME}_ros <ros/ros.h> <visualization_msgs/MarkerArray.h>)
+set_target_properties(${PROJECT_NAME}_ros PROPERTIES UNITY_BUILD ${COMPILE_TOGETHER} UNITY_BUILD_BATCH_SIZE 4)
 add_dependencies(${PROJECT_NAME}_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 
 set_source_files_properties(src/nodes/training_node.cpp src/nodes/simulated_study.cpp src/record/record.cpp src/replay/run.cpp PROPERTIES

@@ -73,6 +73,8 @@ struct Parameters {
   TrackerReader::Options reader;
 };
 
+}  // namespace
+
 /// Runs callbacks at once, in the thread in which their messages arrive.
 class ImmediateQueue : public ros::CallbackQueueInterface {
  public:
@@ -149,8 +151,6 @@ std::vector<std::string> known_reasons() {
     reasons.emplace_back(DecodeError(kind, "").reason());
   return reasons;
 }
-
-}  // namespace
 
 struct HandTracking::Impl {
   Impl(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const Parameters& parameters)

@@ -34,7 +34,7 @@
 namespace mrhi {
 namespace {
 
-constexpr int kQueue = 10;
+constexpr int kHandQueue = 10;
 constexpr Nanoseconds kSlack = 100'000'000;  // delay after which a frame may still arrive
 const ros::WallDuration kIdlePeriod(1.0 / 30);
 
@@ -126,7 +126,7 @@ struct InteractionServer::Impl {
         diagnostics_.rejected("unusable hand", error.what());
       }
     };
-    hands_ = node.subscribe<mr_hand_interaction::HandFrame>("hand_frame", kQueue,
+    hands_ = node.subscribe<mr_hand_interaction::HandFrame>("hand_frame", kHandQueue,
                                                             boost::function<void(const Arrival&)>(handler),
                                                             nullptr, ros::TransportHints().tcpNoDelay());
   }

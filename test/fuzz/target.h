@@ -13,10 +13,10 @@
 // A target is a function of bytes that ends, without an exception, whatever they are. libFuzzer calls it
 // under its own name; test_corpus.cpp, which has all of them in one program, by theirs.
 #ifdef MRHI_CORPUS_TEST
-#define FUZZ_TARGET(name)                                           \
-  static void fuzz(const std::uint8_t* data, std::size_t size);     \
-  static const mrhi::fuzzing::Registered kRegistered{#name, &fuzz}; \
-  static void fuzz(const std::uint8_t* data, std::size_t size)
+#define FUZZ_TARGET(name)                                                   \
+  static void fuzz_##name(const std::uint8_t* data, std::size_t size);      \
+  static const mrhi::fuzzing::Registered kFuzz_##name{#name, &fuzz_##name}; \
+  static void fuzz_##name(const std::uint8_t* data, std::size_t size)
 #else
 #define FUZZ_TARGET(name)                                                             \
   static void fuzz(const std::uint8_t* data, std::size_t size);                       \
