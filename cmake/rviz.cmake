@@ -25,4 +25,5 @@ add_library(${PROJECT_NAME}_rviz src/ros/rviz/training_panel.cpp src/ros/rviz/in
 target_include_directories(${PROJECT_NAME}_rviz SYSTEM PRIVATE ${rviz_INCLUDE_DIRS} ${OGRE_INCLUDE_DIRS})
 target_compile_definitions(${PROJECT_NAME}_rviz PRIVATE QT_NO_KEYWORDS)
 target_link_libraries(${PROJECT_NAME}_rviz PRIVATE ${PROJECT_NAME}_ros ${rviz_LIBRARIES} ${rviz_displays} Qt${qt_version}::Widgets)
+precompiled_as(${PROJECT_NAME}_rviz ${PROJECT_NAME}_ros)
 install(TARGETS ${PROJECT_NAME}_rviz LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
