@@ -11,6 +11,7 @@ PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file
 sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
 import page_figures  # noqa: E402
 import page_recipes  # noqa: E402
+from page_recipes import grasps, people, stability  # noqa: E402
 
 
 class Pages(unittest.TestCase):
@@ -93,7 +94,7 @@ class TestCaptures(unittest.TestCase):
                 "s2_notebook_use_02_7   10 frames of   1 captures; within 50 mm  90 % (90 to 90), within 20 mm  80 % (80 to 80); ...\n"
                 "windows lead 1   40 frames ...\n"
                 "  against a rigid hand: within 20 mm +8 points (-4 to +13)\n")
-        figures = page_recipes.captures_figures([[root, {"defaults": (root, told), "assist alone": (root, told)}]])
+        figures = grasps.captures_figures([[root, {"defaults": (root, told), "assist alone": (root, told)}]])
         self.assertEqual(figures["sets"].split("\n")[-1], "| ARCTIC | 2 (2) | 2, 1 | 70 % (60 to 80) | 50 % (40 to 60) | 18 N | "
                          "40 % (30 to 50) | +8 (-4 to +13) |")
         self.assertEqual(figures["chosen"], "90 % (90 to 90) and 80 % (80 to 80) in the 1 that the defaults were chosen on, "
@@ -110,9 +111,9 @@ class TestRecordings(unittest.TestCase):
         events = [closing("pinch20", "a", "1"), closing("pinch20", "a", "0", "30"), closing("pinch30", "b", "1"),
                   closing("grab_cube60", "a", "0"), closing("pass_cube40", "a", "0"), closing("pass_cube60", "b", "1")]
         rows = [{"row": name, "object": "all", "held": "1", "events": "2", "force_p90_N": "16.6"}
-                for name in page_recipes.PINCHES + page_recipes.GRABS]
-        played = {label: (events, rows) for label in page_recipes.HANDS}
-        figures = page_recipes.recordings_figures(played, {(30, 0): 4 * events, (30, 1): events, (30, 3): [], (30, 5): []})
+                for name in grasps.PINCHES + grasps.GRABS]
+        played = {label: (events, rows) for label in grasps.HANDS}
+        figures = grasps.recordings_figures(played, {(30, 0): 4 * events, (30, 1): events, (30, 3): [], (30, 5): []})
         self.assertTrue(figures["hands"].split("\n")[2].startswith("| defaults | 1, 17 N | 1, 17 N |"), figures["hands"])
         # Of a, half is held, of b all: resampled 50 to 100 %; Wilson's interval of 2 of 3 begins at 21 %.
         self.assertIn("| pinch, cubes of 20 to 40 mm | 2 of 3 (21 to 100 %) |", figures["sums"])
@@ -123,7 +124,7 @@ class TestRecordings(unittest.TestCase):
 
 class TestPeople(unittest.TestCase):
     def test_figures_of_operators_are_the_ends_of_what_their_tests_print(self):
-        figures = page_recipes.people_figures(
+        figures = people.people_figures(
             "cube, veteran: 0.85 s, widest at 64 %, closed by 72 % before its end\n"
             "cube, beginner: 1.14 s, widest at 66 %, closed by 65 % before its end\n"
             "1.8 g, 400 g, 20 cm: grip 12.2 N, p90 14.2 N, load 7.1 N, r 0.98, margin 63 %\n"
@@ -141,10 +142,10 @@ class TestStability(unittest.TestCase):
     def test_bounds_are_those_of_springs_and_dampers(self):
         cell = {"mass_kg": 1.0, "contacts": 4.0, "stiffness_n_m": 100.0}  # the springs' bound is 0.1 s, the dampers' 0.08198 s
         for step, springs, dampers in ((0.0819, False, False), (0.0821, False, True), (0.1001, True, True)):
-            self.assertEqual((page_recipes._beyond_springs(dict(cell, step_s=step)),
-                              page_recipes._beyond_dampers(dict(cell, step_s=step))), (springs, dampers), step)
-        self.assertTrue(page_recipes._is_grip(dict(cell, mass_kg=0.035)))  # 0.8 * 4 * 100 * 0.002 = 2 * 0.0356 * 9
-        self.assertFalse(page_recipes._is_grip(dict(cell, mass_kg=0.036)))
+            self.assertEqual((stability._beyond_springs(dict(cell, step_s=step)),
+                              stability._beyond_dampers(dict(cell, step_s=step))), (springs, dampers), step)
+        self.assertTrue(stability._is_grip(dict(cell, mass_kg=0.035)))  # 0.8 * 4 * 100 * 0.002 = 2 * 0.0356 * 9
+        self.assertFalse(stability._is_grip(dict(cell, mass_kg=0.036)))
 
 
 if __name__ == "__main__":
