@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -29,6 +30,9 @@ void validate(const Configuration& configuration);
 
 /// Present value of a parameter, as YAML for set_parameter(). Throws ParameterError for an unknown name.
 std::string parameter_text(const Configuration& configuration, const std::string& name);
+
+/// Present values of all parameters, likewise, by their names.
+std::map<std::string, std::string> parameter_texts(const Configuration& configuration);
 
 /// Limits of a number, and of a slider for it.
 struct ParameterLimits {

@@ -131,15 +131,16 @@ bool assign_gravity(Configuration& configuration, const YAML::Node& node) {
 }
 
 std::string gravity_text(const Configuration& configuration) {
-  if (!configuration.gravity) return "scene";
-  const Vector3& g = *configuration.gravity;
-  return "[" + text::exact(g.x()) + ", " + text::exact(g.y()) + ", " + text::exact(g.z()) + "]";
+  return configuration.gravity ? text::exact(*configuration.gravity) : "scene";
 }
 
-std::vector<std::pair<std::string, ContactModelKind>> contact_model_names() {
-  std::vector<std::pair<std::string, ContactModelKind>> names;
-  for (const ContactModelEntry* model : contact_models()) names.push_back({model->name, {model->name}});
-  return names;
+/// One of the registered models or filters, by their names.
+template <class Kind, class Entry, class Access>
+ParameterEntry named_choice(const std::string& name, const std::vector<const Entry*>& entries,
+                            Access access) {
+  std::vector<std::pair<std::string, Kind>> kinds;
+  for (const Entry* entry : entries) kinds.push_back({entry->name, {entry->name}});
+  return choice<Kind>(name, kinds, access);
 }
 
 std::vector<ParameterEntry> members() {
@@ -148,7 +149,7 @@ std::vector<ParameterEntry> members() {
   using H = HandStrength;
   const Word unlimited{"unlimited", ""}, material{"material", " for that of the object's material"};
   return {
-      choice<ContactModelKind>("contact_model", contact_model_names(), of(&C::contact_model)),
+      named_choice<ContactModelKind>("contact_model", contact_models(), of(&C::contact_model)),
       {"gravity", "three numbers [x, y, z] from -100 to 100 in m/s^2, or 'scene' for the scene's own",
        assign_gravity, gravity_text,
        ParameterLimits{kGravity.min, kGravity.max, kGravitySlider.min, kGravitySlider.max}},
@@ -191,10 +192,8 @@ std::vector<ParameterEntry> members() {
 }
 
 std::vector<ParameterEntry> filter_parameters() {
-  std::vector<std::pair<std::string, FilterKind>> names;
-  for (const HandFilter* filter : hand_filters()) names.push_back({filter->name, {filter->name}});
-  std::vector<ParameterEntry> entries{
-      choice<FilterKind>("filter/type", names, of(&Configuration::filter, &FilterConfiguration::type))};
+  std::vector<ParameterEntry> entries{named_choice<FilterKind>(
+      "filter/type", hand_filters(), of(&Configuration::filter, &FilterConfiguration::type))};
   for (const FilterSetting& setting : filter_settings()) {
     const std::string meaning = *setting.meaning ? " " + std::string(setting.meaning) : "";
     const auto add = [&](auto member) {
@@ -234,9 +233,7 @@ const std::vector<ParameterEntry>& parameter_table() {
 }
 
 const ParameterEntry& entry_of(const std::string& name) {
-  for (const ParameterEntry& entry : parameter_table()) {
-    if (entry.name == name) return entry;
-  }
+  if (const ParameterEntry* const entry = text::find_named(parameter_table(), name)) return *entry;
   throw ParameterError("unknown parameter '" + text::one_line(name, 60) +
                        "'; allowed: " + text::joined(parameter_names()));
 }
@@ -285,13 +282,9 @@ class FileReader {
 }  // namespace
 
 void set_parameter(Configuration& configuration, const std::string& name, const std::string& yaml_value) {
-  try {
-    const std::string what =
-        "parameter '" + text::one_line(name, 60) + "': '" + text::one_line(yaml_value, 60) + "'";
-    assign(configuration, name, load_yaml(what, yaml_value));
-  } catch (const YamlError& error) {
-    throw ParameterError(error.what());
-  }
+  const std::string what =
+      "parameter '" + text::one_line(name, 60) + "': '" + text::one_line(yaml_value, 60) + "'";
+  rethrown<ParameterError, YamlError>("", [&] { assign(configuration, name, load_yaml(what, yaml_value)); });
 }
 
 void load_parameters(Configuration& configuration, const std::string& yaml_file) {
@@ -321,14 +314,18 @@ std::string parameter_text(const Configuration& configuration, const std::string
   return entry_of(name).text(configuration);
 }
 
+std::map<std::string, std::string> parameter_texts(const Configuration& configuration) {
+  std::map<std::string, std::string> texts;
+  for (const ParameterEntry& entry : parameter_table()) texts[entry.name] = entry.text(configuration);
+  return texts;
+}
+
 std::optional<ParameterLimits> parameter_limits(const std::string& name) {
   return entry_of(name).limits;
 }
 
 std::vector<std::string> parameter_names() {
-  std::vector<std::string> names;
-  for (const ParameterEntry& entry : parameter_table()) names.push_back(entry.name);
-  return names;
+  return text::names_of(parameter_table());
 }
 
 }  // namespace mrhi

@@ -72,16 +72,14 @@ void check_bodies(const Scene& scene, const Joint& joint) {
   const auto bodies = static_cast<int>(scene.bodies.size());
   if (joint.child < 0 || joint.child >= bodies || joint.parent < Joint::kWorld || joint.parent >= bodies)
     refuse(joint, "a body that is not there", "the scene's");
-  if (scene.bodies[static_cast<std::size_t>(joint.child)].fixed) {
-    refuse(joint, "moves the fixture '" + scene.bodies[static_cast<std::size_t>(joint.child)].name + "'",
-           "a body that is no fixture");
+  if (scene.bodies[joint.child].fixed) {
+    refuse(joint, "moves the fixture '" + scene.bodies[joint.child].name + "'", "a body that is no fixture");
   }
 }
 
 void check_tree(const Scene& scene, const Joint& joint) {
   if (joint_of(scene, joint.child) != &joint) {
-    refuse(joint,
-           "is a second one of body '" + scene.bodies[static_cast<std::size_t>(joint.child)].name + "'",
+    refuse(joint, "is a second one of body '" + scene.bodies[joint.child].name + "'",
            "one joint to each body");
   }
   std::size_t depth = 0;
@@ -91,24 +89,17 @@ void check_tree(const Scene& scene, const Joint& joint) {
   }
 }
 
-/// The first joint of the chain to this one: its parent is the world, a fixture or a free body.
-const Joint& first_of(const Scene& scene, const Joint& joint) {
-  const Joint* first = &joint;
-  while (const Joint* above = joint_of(scene, first->parent)) first = above;
-  return *first;
-}
-
 /// Limits the number of joints that a force on one of them may move: those of a mechanism, which are solved
 /// together. A mechanism begins at a joint on the world or a fixture, or at a free body.
 void check_mechanism_sizes(const Scene& scene) {
   std::map<std::string, std::size_t> together;
   for (const Joint& joint : scene.joints) {
-    const Joint& first = first_of(scene, joint);
-    const Body* const parent =
-        first.parent == Joint::kWorld ? nullptr : &scene.bodies[static_cast<std::size_t>(first.parent)];
+    const Joint* first = &joint;  // of the chain to this one: on the world, a fixture or a free body
+    while (const Joint* above = joint_of(scene, first->parent)) first = above;
+    const Body* const parent = first->parent == Joint::kWorld ? nullptr : &scene.bodies[first->parent];
     const bool floats = parent != nullptr && !parent->fixed;
     const std::string which =
-        floats ? "body '" + parent->name + "'" : "joint '" + text::one_line(first.name, 60) + "'";
+        floats ? "body '" + parent->name + "'" : "joint '" + text::one_line(first->name, 60) + "'";
     if (++together[which] > kMaxConnectedJoints) {
       throw std::invalid_argument(
           "the mechanism of " + which + " has more than " + std::to_string(kMaxConnectedJoints) +
@@ -158,10 +149,10 @@ void arrange_joints(Scene& scene) {
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   for (std::size_t i = 0; i < sorted.size(); ++i) scene.joints[i] = sorted[i].second;
   for (const Joint& joint : scene.joints) {
-    Body& child = scene.bodies[static_cast<std::size_t>(joint.child)];
+    Body& child = scene.bodies[joint.child];
     Pose parent;
     if (joint.parent != Joint::kWorld) {
-      Body& body = scene.bodies[static_cast<std::size_t>(joint.parent)];
+      Body& body = scene.bodies[joint.parent];
       body.flies = false;
       parent = body.start;
     }
@@ -176,7 +167,7 @@ std::optional<int> floating_root(const Scene& scene, int body) {
     if (joint->parent == Joint::kWorld) return {};
     body = joint->parent;
   }
-  if (scene.bodies[static_cast<std::size_t>(body)].fixed) return {};
+  if (scene.bodies[body].fixed) return {};
   return body;
 }
 

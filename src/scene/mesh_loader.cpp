@@ -79,7 +79,7 @@ class Collector {
   std::map<std::array<ai_real, 3>, int> known_;
 };
 
-const char* const kFormats[] = {".stl", ".obj", ".dae", ".ply", ".gltf", ".glb", ".off", ".3ds"};
+const std::vector<std::string> kFormats{".stl", ".obj", ".dae", ".ply", ".gltf", ".glb", ".off", ".3ds"};
 
 std::string lower_extension(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
@@ -89,12 +89,9 @@ std::string lower_extension(const std::string& file) {
 
 void check_format(const std::string& file) {
   const std::string extension = lower_extension(file);
-  std::string all;
-  for (const char* known : kFormats) {
-    if (extension == known) return;
-    all += (all.empty() ? "" : ", ") + std::string(known);
-  }
-  throw std::runtime_error("is of the format '" + text::one_line(extension, 20) + "'; allowed: " + all);
+  if (std::find(kFormats.begin(), kFormats.end(), extension) == kFormats.end())
+    throw std::runtime_error("is of the format '" + text::one_line(extension, 20) +
+                             "'; allowed: " + text::joined(kFormats));
 }
 
 /// Refuses the pointer that git stores in place of a large file that it has not fetched.

@@ -249,10 +249,14 @@ class Normaliser {
     out_.CloseElement();
   }
 
+  static const XMLElement* mass_of(const XMLElement& link) {
+    const XMLElement* inertial = link.FirstChildElement("inertial");
+    return inertial == nullptr ? nullptr : inertial->FirstChildElement("mass");
+  }
+
   /// An inertia of zeros means that of the shapes; urdfdom requires the element.
   void write_inertial(const XMLElement& link, const std::string& where) {
-    const XMLElement* inertial = link.FirstChildElement("inertial");
-    const XMLElement* mass = inertial == nullptr ? nullptr : inertial->FirstChildElement("mass");
+    const XMLElement *inertial = link.FirstChildElement("inertial"), *mass = mass_of(link);
     if (mass == nullptr) return;
     open("inertial", {});
     write_origin(*inertial, where);
@@ -274,9 +278,7 @@ class Normaliser {
                     where + " " + name + " " + in_quotes(attribute(element, name)));
       words.resize(3);
     }
-    std::string joined;
-    for (const std::string& word : words) joined += (joined.empty() ? "" : " ") + word;
-    return joined;
+    return text::joined(words, " ");
   }
 
   void write_origin(const XMLElement& element, const std::string& where) {
@@ -366,30 +368,29 @@ class Normaliser {
   /// numbers, like #ff0000, is grey. Other numbers stay as they are, and are refused later.
   std::string rgba(const std::string& given, const std::string& where) {
     constexpr double kRounding = 1e-3;
+    const std::vector<std::string> words = words_of(given);
     std::vector<double> parts;
-    std::string numbers;
-    for (const std::string& word : words_of(given)) {
+    for (const std::string& word : words) {
       const std::optional<double> number = text::to_number(word);
       if (!number) {
         warnings_.add("colors that are no numbers are drawn grey", in_quotes(given) + " of " + where);
         return "0.7 0.7 0.7 1";
       }
       parts.push_back(*number);
-      numbers += (numbers.empty() ? "" : " ") + word;
     }
     const auto is_byte = [](double part) { return part >= 0.0 && part <= 255.0 && part == std::floor(part); };
     const auto is_ratio = [](double part) { return part >= 0.0 && part <= 1.0 + kRounding; };
     const bool has_opacity = parts.size() == 4, ratios = std::all_of(parts.begin(), parts.end(), is_ratio);
     const bool bytes = !ratios && std::all_of(parts.begin(), parts.end() - has_opacity, is_byte) &&
                        (!has_opacity || is_byte(parts[3]) || is_ratio(parts[3]));
-    if (!ratios && !bytes) return numbers;
+    if (!ratios && !bytes) return text::joined(words, " ");
     if (bytes) warnings_.add("colors of 0 to 255 are divided by 255", in_quotes(given) + " of " + where);
-    std::string scaled;
+    std::vector<std::string> scaled;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const double full = bytes && (i < 3 || parts[i] > 1.0) ? 255.0 : 1.0;
-      scaled += (i == 0 ? "" : " ") + text::exact(std::min(1.0, parts[i] / full));
+      scaled.push_back(text::exact(std::min(1.0, parts[i] / full)));
     }
-    return scaled;
+    return text::joined(scaled, " ");
   }
 
   void write_joint(const XMLElement& joint) {
@@ -442,10 +443,8 @@ class Normaliser {
   }
 
   static bool is_empty(const XMLElement& link) {
-    const XMLElement* inertial = link.FirstChildElement("inertial");
-    const XMLElement* mass = inertial == nullptr ? nullptr : inertial->FirstChildElement("mass");
     return link.FirstChildElement("visual") == nullptr && link.FirstChildElement("collision") == nullptr &&
-           !(text::to_number(attribute(mass, "value")).value_or(0.0) > 0.0);
+           !(text::to_number(attribute(mass_of(link), "value")).value_or(0.0) > 0.0);
   }
 
   /// Adds the world that joints name, if it is no link of the file; otherwise a world above a root that is a

@@ -63,18 +63,16 @@ class Writer {
     write_urdf();
     texts_.emplace_back(fs::path(file_).replace_extension(".yaml"), yaml());
     texts_.emplace_back(file_, out_.str());  // last: a program that waits for it finds the other files, too
-    for (const auto& [file, text] : texts_) check_free(file);
+    for (const auto& [file, text] : texts_) {
+      std::error_code ignored;
+      if (fs::symlink_status(file, ignored).type() != fs::file_type::not_found)
+        throw std::invalid_argument("'" + text::one_line(file.string()) +
+                                    "' is there already; allowed: a file that is not");
+    }
     for (const auto& [file, text] : texts_) save(file, text);
   }
 
  private:
-  static void check_free(const fs::path& file) {
-    std::error_code ignored;
-    if (fs::symlink_status(file, ignored).type() == fs::file_type::not_found) return;
-    throw std::invalid_argument("'" + text::one_line(file.string()) +
-                                "' is there already; allowed: a file that is not");
-  }
-
   void write_urdf() {
     out_ << "<?xml version=\"1.0\"?>\n<robot name=\"" << quoted(scene_.name) << "\">\n  <link name=\""
          << root() << "\"/>\n";
@@ -159,7 +157,7 @@ class Writer {
   }
 
   void write_joint(const Joint& joint) {
-    const Body& child = scene_.bodies[static_cast<std::size_t>(joint.child)];
+    const Body& child = scene_.bodies[joint.child];
     const bool turns = joint.kind == JointKind::turning;
     const char* type = !turns ? "prismatic" : joint.is_limited() ? "revolute" : "continuous";
     std::string more = "    <axis xyz=\"" + numbers(joint.axis) + "\"/>\n";
@@ -175,7 +173,7 @@ class Writer {
     if (joint.parent == Joint::kWorld) {
       write_joint(joint.name, type, root(), child, joint.in_parent, more);
     } else {
-      const Body& parent = scene_.bodies[static_cast<std::size_t>(joint.parent)];
+      const Body& parent = scene_.bodies[joint.parent];
       write_joint(joint.name, type, parent.name, child, parent.link_in_body.inverse() * joint.in_parent,
                   more);
     }
@@ -216,10 +214,10 @@ class Writer {
   static YAML::Node six(const Vector3& a, const Vector3& b) {
     return yaml_list(std::vector<double>{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()});
   }
-  const std::string& name_of(int body) const { return scene_.bodies[static_cast<std::size_t>(body)].name; }
+  const std::string& name_of(int body) const { return scene_.bodies[body].name; }
 
   YAML::Node settings(const Operator& op) const {
-    const Body& body = scene_.bodies[static_cast<std::size_t>(op.body)];
+    const Body& body = scene_.bodies[op.body];
     const Pose start = body.start * body.link_in_body;
     YAML::Node node(YAML::NodeType::Map);
     node["mass"] = text::exact(body.mass);
@@ -234,7 +232,7 @@ class Writer {
 
   YAML::Node settings(const Tether& tether) const {
     const auto in_link = [&](int body, const Vector3& point) {
-      return vector_list(scene_.bodies[static_cast<std::size_t>(body)].link_in_body.to_local(point));
+      return vector_list(scene_.bodies[body].link_in_body.to_local(point));
     };
     YAML::Node node(YAML::NodeType::Map);
     node["body"] = name_of(tether.body);

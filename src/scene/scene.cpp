@@ -39,10 +39,6 @@ constexpr double kMinMomentRatio = 1e-12;  // smallest principal moment over the
                               " is not allowed; allowed: " + allowed.describe() + unit);
 }
 
-void check_mass(const Body& body) {
-  if (!kMass.contains(body.mass)) refuse(body, "mass " + text::number(body.mass) + " kg", kMass, " kg");
-}
-
 void check_start(const Body& body) {
   const Vector3& place = body.start.position;
   if (!kPlace.contains(place.minCoeff()) || !kPlace.contains(place.maxCoeff()) || !place.allFinite())
@@ -74,10 +70,6 @@ void check_inertia(const Body& body) {
                               text::number(kMinMomentRatio) + " of the largest");
 }
 
-bool is_diagonal(const Matrix3& matrix) {
-  return Matrix3(matrix.diagonal().asDiagonal()) == matrix;
-}
-
 /// Axis of the intermediate moment. It is the second axis in free_rotation() (integration/free_flight.cpp):
 /// then A and B of the addition theorem are not negative, and its functions are real.
 int intermediate(const Vector3& moments) {
@@ -96,7 +88,7 @@ void find_principal_axes(Body& body) {
     body.principal_axes.col(i) = Vector3::Unit(axis);
     body.inverse_moments[i] = diagonal[axis];
   }
-  if (body.fixed || is_diagonal(body.inverse_inertia)) return;
+  if (body.fixed || Matrix3(diagonal.asDiagonal()) == body.inverse_inertia) return;
   const Eigen::SelfAdjointEigenSolver<Matrix3> solver(body.inverse_inertia);
   body.principal_axes = solver.eigenvectors();
   if (body.principal_axes.determinant() < 0.0) body.principal_axes.col(2) *= -1.0;
@@ -104,10 +96,9 @@ void find_principal_axes(Body& body) {
 }
 
 template <typename Named>
-std::optional<int> find_named(const std::vector<Named>& all, const std::string& name) {
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
-  if (found == all.end()) return {};
-  return static_cast<int>(found - all.begin());
+std::optional<int> index_of(const std::string& name, const std::vector<Named>& all) {
+  const Named* const found = text::find_named(all, name);
+  return found == nullptr ? std::nullopt : std::make_optional(static_cast<int>(found - all.data()));
 }
 
 /// For each body of the scene: 1 if it is this one or a descendant by joints. A body's joint precedes those
@@ -116,8 +107,7 @@ std::vector<char> removed_with(std::size_t body, const Scene& scene) {
   std::vector<char> removed(scene.bodies.size(), 0);
   removed[body] = 1;
   for (const Joint& joint : scene.joints) {
-    if (joint.parent != Joint::kWorld && removed[static_cast<std::size_t>(joint.parent)] != 0)
-      removed[static_cast<std::size_t>(joint.child)] = 1;
+    if (joint.parent != Joint::kWorld && removed[joint.parent] != 0) removed[joint.child] = 1;
   }
   return removed;
 }
@@ -148,7 +138,7 @@ void complete(Body& body) {
   body.flies = !body.fixed;
   body.inverse_inertia = Matrix3::Zero();
   if (!body.fixed) {
-    check_mass(body);
+    if (!kMass.contains(body.mass)) refuse(body, "mass " + text::number(body.mass) + " kg", kMass, " kg");
     check_inertia(body);
     const Matrix3 inverse = body.inertia.inverse();
     body.inverse_inertia = 0.5 * (inverse + inverse.transpose());
@@ -166,11 +156,11 @@ void complete(Body& body) {
 }
 
 std::optional<int> find_body(const Scene& scene, const std::string& name) {
-  return find_named(scene.bodies, name);
+  return index_of(name, scene.bodies);
 }
 
 std::optional<int> find_joint(const Scene& scene, const std::string& name) {
-  return find_named(scene.joints, name);
+  return index_of(name, scene.joints);
 }
 
 std::vector<std::string> graspable_bodies(const Scene& scene) {
@@ -184,18 +174,18 @@ std::vector<std::string> graspable_bodies(const Scene& scene) {
 }
 
 GraspMode grasp_of(const Scene& scene, int body) {
-  return scene.bodies[static_cast<std::size_t>(floating_root(scene, body).value_or(body))].grasp;
+  return scene.bodies[floating_root(scene, body).value_or(body)].grasp;
 }
 
 Body& free_body(Scene& scene, const std::string& name) {
-  std::string names;
+  std::vector<std::string> names;
   for (Body& body : scene.bodies) {
     if (body.fixed) continue;
     if (body.name == name) return body;
-    names += (names.empty() ? "" : ", ") + body.name;
+    names.push_back(body.name);
   }
   throw std::invalid_argument("scene '" + scene.name + "' has no free object '" + name +
-                              "'; allowed: " + (names.empty() ? "none" : names));
+                              "'; allowed: " + (names.empty() ? "none" : text::joined(names)));
 }
 
 void append(const Scene& part, Scene& scene) {
@@ -245,7 +235,7 @@ void remove_body(std::size_t body, Scene& scene) {
   for (const char gone : removed) place.push_back(gone != 0 ? -1 : staying++);
   std::size_t b = 0;
   keep(scene.bodies, [&](const Body&) { return removed[b++] == 0; });
-  const auto stays = [&](int& index) { return (index = place[static_cast<std::size_t>(index)]) >= 0; };
+  const auto stays = [&](int& index) { return (index = place[index]) >= 0; };
   keep(scene.joints, [&](Joint& joint) {
     if (joint.parent != Joint::kWorld) stays(joint.parent);
     return stays(joint.child);

@@ -50,10 +50,6 @@ struct Weight {
   Matrix3 inertia = Matrix3::Zero();
 };
 
-Matrix3 symmetric(const Matrix3& matrix) {
-  return 0.5 * (matrix + matrix.transpose());
-}
-
 /// Parallel axes: I = sum of I_i + m_i (d^2 1 - d d^T), with d from the common centre to the part's.
 Weight sum_of(const std::vector<Weight>& parts) {
   if (parts.size() == 1) return parts.front();
@@ -170,7 +166,8 @@ class BodyReader {
     Matrix3 inertia;
     inertia << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz, given.iyz,
         given.izz;
-    Weight weight{given.mass, origin.position, symmetric(to_link * inertia * to_link.transpose())};
+    inertia = to_link * inertia * to_link.transpose();
+    Weight weight{given.mass, origin.position, 0.5 * (inertia + inertia.transpose())};
     const bool none = weight.inertia.isZero(0.0);
     const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(weight.inertia).eigenvalues();
     const bool part_only = !none && std::abs(moments[0]) <= kMissingMoment * moments[2];
@@ -220,11 +217,7 @@ class BodyReader {
   }
 
   void finish(Body& body) const {
-    try {
-      complete(body);
-    } catch (const std::invalid_argument& error) {
-      throw SceneError(source_ + ": " + error.what());
-    }
+    rethrown<SceneError, std::invalid_argument>(source_ + ": ", [&] { complete(body); });
     if (body.fixed) return;
     const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(body.inertia).eigenvalues();
     if (moments[0] + moments[1] < (1 - kMomentTolerance) * moments[2])
@@ -358,11 +351,7 @@ PlacedLink only_body(const std::string& source, UrdfDocument& document) {
 }
 
 void join_bodies(const std::string& source, Scene& scene) {
-  try {
-    arrange_joints(scene);
-  } catch (const std::invalid_argument& error) {
-    throw SceneError(source + ": " + text::one_line(error.what()));
-  }
+  rethrown<SceneError, std::invalid_argument>(source + ": ", [&] { arrange_joints(scene); });
 }
 
 /// Refuses bodies that overlap at the start: they would repel each other violently, and many of them would
@@ -371,8 +360,7 @@ void check_overlaps(const std::string& file, Scene& scene) {
   Warnings warnings;
   for (const auto& [a, b] : overlaps_in_mechanisms(scene))
     warnings.add("links of one mechanism that overlap where they start do not touch each other",
-                 "'" + scene.bodies[static_cast<std::size_t>(b)].name + "' and '" +
-                     scene.bodies[static_cast<std::size_t>(a)].name + "'");
+                 "'" + scene.bodies[b].name + "' and '" + scene.bodies[a].name + "'");
   for (const std::string& line : warnings.lines()) scene.warnings.push_back(line);
   const std::string overlaps = overlaps_at_start(scene);
   if (overlaps.empty()) return;

@@ -64,7 +64,7 @@ void read_joint(const YamlElement& element, Joint& joint) {
 /// Sets the properties of joints that a URDF has no element for. arrange_joints() checks their limits.
 void read_joint_settings(const YamlElement& element, Scene& scene) {
   for (const std::string& name : checked_keys(element, text::names_of(scene.joints)))
-    read_joint(element.at(name), scene.joints[static_cast<std::size_t>(*find_joint(scene, name))]);
+    read_joint(element.at(name), scene.joints[*find_joint(scene, name)]);
 }
 
 using Element = YamlElement;
@@ -99,9 +99,8 @@ int read_body(const Element& element, bool fixed, const Scene& scene) {
   std::vector<std::string> names;
   for (const Body& body : scene.bodies) {
     const bool on_joint = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& joint) {
-      return &scene.bodies[static_cast<std::size_t>(joint.child)] == &body ||
-             (joint.parent != Joint::kWorld &&
-              &scene.bodies[static_cast<std::size_t>(joint.parent)] == &body);
+      return &scene.bodies[joint.child] == &body ||
+             (joint.parent != Joint::kWorld && &scene.bodies[joint.parent] == &body);
     });
     if (body.fixed == fixed && (fixed || !on_joint)) names.push_back(body.name);
   }
@@ -169,8 +168,8 @@ void read_tether(const Element& element, Scene& scene) {
     if (key == "anchor") anchor = read_vector(given, {-100, 100});
     if (key == "length") tether.length = read_number(given, kTetherLength, " m");
   }
-  tether.at = scene.bodies[static_cast<std::size_t>(tether.body)].link_in_body * at;
-  tether.anchor = scene.bodies[static_cast<std::size_t>(tether.fixture)].link_in_body * anchor;
+  tether.at = scene.bodies[tether.body].link_in_body * at;
+  tether.anchor = scene.bodies[tether.fixture].link_in_body * anchor;
   scene.tethers.push_back(tether);
 }
 
@@ -224,7 +223,7 @@ void read_grasps(const Element& element, Scene& scene) {
     const Element given = element.at(link);
     const auto mode = given.node.IsScalar() ? grasp_mode(given.node.Scalar()) : std::nullopt;
     if (!mode) given.refuse(kGraspModes);
-    scene.bodies[static_cast<std::size_t>(*find_body(scene, link))].grasp = *mode;
+    scene.bodies[*find_body(scene, link)].grasp = *mode;
   }
 }
 
@@ -236,8 +235,7 @@ void read_twists(const Element& element, Scene& scene) {
     if (!body.fixed) links.push_back(body.name);
   }
   for (const std::string& link : checked_keys(element, links)) {
-    scene.bodies[static_cast<std::size_t>(*find_body(scene, link))].start_twist =
-        read_twist(element.at(link));
+    scene.bodies[*find_body(scene, link)].start_twist = read_twist(element.at(link));
   }
 }
 

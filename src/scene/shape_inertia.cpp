@@ -84,14 +84,15 @@ bool may_overlap(const std::vector<PlacedShape>& shapes) {
   return false;
 }
 
-SolidMoments raw_moments(const Shape& shape) {
-  if (const Mesh* const mesh = std::get_if<Mesh>(&shape)) return signed_moments(*mesh->triangles);
-  return std::visit([](const auto& asked) { return asked.moments(); }, shape);
-}
-
 SolidMoments sum_of(const std::vector<PlacedShape>& shapes) {
   SolidMoments all;
-  for (const PlacedShape& shape : shapes) add(placed(raw_moments(shape.shape), shape.pose), 1.0, all);
+  for (const PlacedShape& shape : shapes) {
+    const Mesh* const mesh = std::get_if<Mesh>(&shape.shape);
+    const SolidMoments own = mesh != nullptr
+                                 ? signed_moments(*mesh->triangles)
+                                 : std::visit([](const auto& any) { return any.moments(); }, shape.shape);
+    add(placed(own, shape.pose), 1.0, all);
+  }
   return all;
 }
 
@@ -110,9 +111,7 @@ class Columns {
     low_ = {box.min().y(), box.min().z()};
     cell_ = Eigen::Vector2d(box.sizes().y(), box.sizes().z()) / kLines;
     if (!(cell_.minCoeff() > 0.0)) return;
-    for (const auto& t : mesh.triangles)
-      cross(mesh.vertices[std::size_t(t[0])], mesh.vertices[std::size_t(t[1])],
-            mesh.vertices[std::size_t(t[2])]);
+    for (const auto& t : mesh.triangles) cross(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
   }
 
   /// Moments of the volume that parts share. Between two crossings a line is inside n parts; n - 1 of them
@@ -166,8 +165,7 @@ class Columns {
         const double u = side(q, r, at) / twice, v = side(r, p, at) / twice, w = 1.0 - u - v;
         if (u < 0.0 || v < 0.0 || w < 0.0) continue;
         // The line enters the solid if the triangle's normal points towards -x.
-        lines_[std::size_t(j * kLines + i)].emplace_back(u * a.x() + v * b.x() + w * c.x(),
-                                                         twice < 0.0 ? 1 : -1);
+        lines_[j * kLines + i].emplace_back(u * a.x() + v * b.x() + w * c.x(), twice < 0.0 ? 1 : -1);
       }
   }
 
@@ -186,7 +184,7 @@ void append(const TriangleMesh& mesh, const Pose& pose, TriangleMesh& all) {
 Eigen::AlignedBox3d box_around(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const auto& triangle : mesh.triangles)
-    for (const int v : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
+    for (const int v : triangle) box.extend(mesh.vertices[v]);
   return box;
 }
 
@@ -209,10 +207,10 @@ TriangleMesh convex_hull(const TriangleMesh& mesh) {
   std::vector<int> name(points.size(), -1);
   hull.each_facet([&](std::vector<int>& around) {
     for (int& point : around) {
-      int& known = name[static_cast<std::size_t>(point)];
+      int& known = name[point];
       if (known < 0) {
         known = static_cast<int>(result.vertices.size());
-        result.vertices.push_back(mesh.vertices[static_cast<std::size_t>(point)]);
+        result.vertices.push_back(mesh.vertices[point]);
       }
       point = known;
     }
@@ -268,9 +266,7 @@ bool overlaps_itself(const TriangleMesh& mesh) {
 SolidMoments signed_moments(const TriangleMesh& mesh) {
   SolidMoments moments;
   for (const std::array<int, 3>& triangle : mesh.triangles) {
-    const auto corner = [&](std::size_t i) -> const Vector3& {
-      return mesh.vertices[static_cast<std::size_t>(triangle[i])];
-    };
+    const auto corner = [&](std::size_t i) -> const Vector3& { return mesh.vertices[triangle[i]]; };
     const Vector3 &a = corner(0), &b = corner(1), &c = corner(2);
     const double volume = a.dot(b.cross(c)) / 6.0;
     const Vector3 sum = a + b + c;

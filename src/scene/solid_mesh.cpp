@@ -22,7 +22,7 @@ constexpr double kSmallHole = 0.05;
 constexpr double kMinVolume = 1e-9;
 
 Vector3 corner(const TriangleMesh& mesh, const Triangle& triangle, std::size_t k) {
-  return mesh.vertices[static_cast<std::size_t>(triangle[k])];
+  return mesh.vertices[triangle[k]];
 }
 
 double extent_of(const TriangleMesh& mesh, const Triangles& triangles) {
@@ -136,16 +136,16 @@ std::vector<Triangles> parts_of(const Triangles& triangles) {
       const int now = open.back();
       open.pop_back();
       part.push_back(now);
-      const Triangle here = turned[std::size_t(now)];
+      const Triangle here = turned[now];
       for (std::size_t k = 0; k < 3; ++k) {
         const int from = here[k], to = here[(k + 1) % 3];
         const Edge& edge = edges.at(std::minmax(from, to));
         if (edge.triangles.size() != 2) continue;
         const int next = edge.triangles[0] == now ? edge.triangles[1] : edge.triangles[0];
-        if (reached[std::size_t(next)]) continue;
-        reached[std::size_t(next)] = 1;
+        if (reached[next]) continue;
+        reached[next] = 1;
         open.push_back(next);
-        Triangle& there = turned[std::size_t(next)];
+        Triangle& there = turned[next];
         for (std::size_t j = 0; j < 3; ++j)
           if (there[j] == from && there[(j + 1) % 3] == to) {
             std::swap(there[1], there[2]);
@@ -155,7 +155,7 @@ std::vector<Triangles> parts_of(const Triangles& triangles) {
     }
     std::sort(part.begin(), part.end());
     parts.emplace_back();
-    for (const int t : part) parts.back().push_back(turned[std::size_t(t)]);
+    for (const int t : part) parts.back().push_back(turned[t]);
   }
   return parts;
 }
@@ -197,11 +197,11 @@ Triangles divided_at_border(const TriangleMesh& mesh, Triangles triangles, doubl
         const int from = triangle[k], to = triangle[(k + 1) % 3];
         const std::pair<int, int> ends = std::minmax(from, to);
         if (!std::binary_search(border.begin(), border.end(), ends)) continue;
-        const Vector3 a = mesh.vertices[std::size_t(from)], along = mesh.vertices[std::size_t(to)] - a;
+        const Vector3 a = mesh.vertices[from], along = mesh.vertices[to] - a;
         const double length = along.norm();
         for (const auto& other : border)
           for (const int v : {other.first, other.second}) {
-            const Vector3 from_a = mesh.vertices[std::size_t(v)] - a;
+            const Vector3 from_a = mesh.vertices[v] - a;
             const double s = from_a.dot(along) / length;
             if (s > distance && s < length - distance && from_a.cross(along).norm() < distance * length)
               on_edge = v;
@@ -236,7 +236,7 @@ bool fill_holes(const TriangleMesh& mesh, Triangles& part) {
     std::vector<int> loop;
     Eigen::AlignedBox3d box;
     for (auto at = next.begin(); at != next.end(); at = next.find(loop.back())) {
-      box.extend(mesh.vertices[std::size_t(at->first)]);
+      box.extend(mesh.vertices[at->first]);
       loop.push_back(at->second);
       next.erase(at);
     }
@@ -374,7 +374,7 @@ TriangleMesh cut_out(const TriangleMesh& mesh, const std::vector<std::array<int,
   for (Triangle triangle : triangles) {
     for (int& v : triangle) {
       const auto known = renamed.emplace(v, static_cast<int>(part.vertices.size()));
-      if (known.second) part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+      if (known.second) part.vertices.push_back(mesh.vertices[v]);
       v = known.first->second;
     }
     part.triangles.push_back(triangle);

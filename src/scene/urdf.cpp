@@ -165,7 +165,7 @@ void set_parent(const UrdfDocument& document, const Scene& scene, const urdf::Jo
     const std::optional<int> body = find_body(scene, link->name);
     if (body) {
       joint.parent = *body;
-      joint.in_parent = scene.bodies[static_cast<std::size_t>(*body)].link_in_body * joint.in_parent;
+      joint.in_parent = scene.bodies[*body].link_in_body * joint.in_parent;
       return;
     }
     joint.in_parent = to_pose(link->parent_joint->parent_to_joint_origin_transform) * joint.in_parent;
@@ -186,9 +186,8 @@ Joint read_joint(const std::string& file, const UrdfDocument& document, const Sc
     throw SceneError(what + "axis " + text::vector(axis) + "; allowed: a direction, its length " +
                      length.describe());
   joint.axis = axis.normalized();
-  const auto child = static_cast<std::size_t>(*find_body(scene, given.child_link_name));
-  joint.child = static_cast<int>(child);
-  joint.in_child = scene.bodies[child].link_in_body;
+  joint.child = *find_body(scene, given.child_link_name);
+  joint.in_child = scene.bodies[joint.child].link_in_body;
   read_limits(given, joint);
   set_parent(document, scene, given, joint);
   if (given.dynamics) {

@@ -1,4 +1,3 @@
-#include <Eigen/Geometry>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
@@ -171,10 +170,7 @@ const std::vector<ShapeKind>& shape_kinds() {
 }
 
 const ShapeKind* find_shape_kind(const std::string& name) {
-  for (const ShapeKind& kind : shape_kinds()) {
-    if (kind.name == name) return &kind;
-  }
-  return nullptr;
+  return text::find_named(shape_kinds(), name);
 }
 
 std::string shape_kind_names() {
@@ -341,8 +337,7 @@ std::shared_ptr<const TriangleMesh> ShapeReader::solid_of(const Named& mesh, con
 const TriangleMesh& ShapeReader::triangles_of(const Named& mesh) {
   const LoadedMesh& found = loaded_.at(mesh.key());  // by prepare()
   if (!found.problem.empty()) throw std::runtime_error(found.problem);
-  const auto same = [&](const SceneFile& file) { return file.name == mesh.uri; };
-  if (std::none_of(files_.begin(), files_.end(), same)) files_.push_back({mesh.uri, mesh.file});
+  if (text::find_named(files_, mesh.uri) == nullptr) files_.push_back({mesh.uri, mesh.file});
   return found.mesh;
 }
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <ostream>
 #include <set>
 
 #include "text.h"

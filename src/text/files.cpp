@@ -87,6 +87,12 @@ std::ofstream file_to_write(const std::string& file, std::ios::openmode mode) {
   return std::ofstream(file, mode | std::ios::out);
 }
 
+void write_file(const std::string& file, const std::string& text) {
+  std::ofstream out = file_to_write(file);
+  out << text << std::flush;
+  if (!out) throw std::runtime_error("cannot write " + file + ": " + std::strerror(errno));
+}
+
 bool is_file(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::is_regular_file(path, ignored);

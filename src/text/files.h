@@ -53,6 +53,9 @@ void check_may_be_written(const std::string& file);
 std::ofstream file_to_write(const std::string& file,
                             std::ios::openmode mode = std::ios::out | std::ios::binary);
 
+/// Writes a whole file, likewise. Throws std::runtime_error that names it.
+void write_file(const std::string& file, const std::string& text);
+
 /// Finds a file: `name` is a path to a file with this extension (".urdf"), or a name looked up as
 /// DIRECTORY/NAME.urdf. Throws InputError with the `kind` of file ("scene") and the known names.
 std::string find_named_file(const std::string& kind, const std::string& name, const std::string& extension,

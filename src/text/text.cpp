@@ -41,13 +41,17 @@ std::optional<double> to_number(const std::string& text) {
   return value;
 }
 
+std::string exact(const Vector3& value) {
+  return "[" + exact(value.x()) + ", " + exact(value.y()) + ", " + exact(value.z()) + "]";
+}
+
 std::string vector(const Vector3& value) {
   return "[" + number(value.x()) + ", " + number(value.y()) + ", " + number(value.z()) + "]";
 }
 
-std::string joined(const std::vector<std::string>& names) {
+std::string joined(const std::vector<std::string>& texts, const std::string& separator) {
   std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  for (const std::string& text : texts) list += (list.empty() ? "" : separator) + text;
   return list;
 }
 

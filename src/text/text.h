@@ -17,10 +17,12 @@ namespace mrhi::text {
 std::string number(double value);
 /// Shortest text that is read back as the same bits.
 std::string exact(double value);
+std::string exact(const Vector3& value);  ///< "[x, y, z]"
 std::string vector(const Vector3& value);
 /// Converts a whole text to a number, with a decimal point in any locale; empty for any other text.
 std::optional<double> to_number(const std::string& text);
-std::string joined(const std::vector<std::string>& names);
+/// The texts with a separator between each two.
+std::string joined(const std::vector<std::string>& texts, const std::string& separator = ", ");
 
 /// Names of items that have a name each.
 template <typename Items>
@@ -29,6 +31,14 @@ std::vector<std::string> names_of(const Items& items) {
   std::transform(std::begin(items), std::end(items), std::back_inserter(names),
                  [](const auto& item) { return std::string(item.name); });
   return names;
+}
+
+/// The item of that name; null if there is none.
+template <typename Items>
+auto* find_named(Items& items, std::string_view name) {
+  const auto found =
+      std::find_if(std::begin(items), std::end(items), [&](const auto& item) { return item.name == name; });
+  return found == std::end(items) ? nullptr : &*found;
 }
 
 /// Splits at commas.
@@ -50,6 +60,16 @@ bool is_name(const std::string& text);
 
 /// Rule of is_name(), for messages.
 extern const char* const kNameIs;
+
+/// Returns what `work` does. Its exceptions of type From become To, their texts with `before` in front.
+template <typename To, typename From, typename Work>
+decltype(auto) rethrown(const std::string& before, const Work& work) {
+  try {
+    return work();
+  } catch (const From& error) {
+    throw To(before + error.what());
+  }
+}
 
 /// Sorts entries with a `name` and a `place` each by their places, then names.
 template <typename Entry>
