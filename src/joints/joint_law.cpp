@@ -67,12 +67,9 @@ JointState start_state(const Joint& joint) {
 double joint_velocity(const Scene& scene, std::size_t index, const std::vector<BodyState>& bodies) {
   const Joint& joint = scene.joints[index];
   const auto motion = [&](int body) {
-    const auto b = static_cast<std::size_t>(body);
-    return body == Joint::kWorld ? Twist() : twist_of(scene.bodies[b], bodies[b]);
+    return body == Joint::kWorld ? Twist() : twist_of(scene.bodies[body], bodies[body]);
   };
-  const auto pose = [&](int body) {
-    return body == Joint::kWorld ? Pose() : bodies[static_cast<std::size_t>(body)].pose;
-  };
+  const auto pose = [&](int body) { return body == Joint::kWorld ? Pose() : bodies[body].pose; };
   const Pose frame = pose(joint.parent) * joint.in_parent, child = pose(joint.child);
   const Vector3 axis = frame.orientation * joint.axis;
   const Twist parent = motion(joint.parent), own = motion(joint.child);

@@ -21,8 +21,7 @@ Linkage& linkage_of(const Scene& scene, int body, std::vector<Linkage>& linkages
     if (body >= 0 && place_of(linkage, body) != LinkageBody::kNone) return linkage;
   }
   linkages.emplace_back();
-  if (body >= 0 && !scene.bodies[static_cast<std::size_t>(body)].fixed)
-    linkages.back().bodies.push_back({body});
+  if (body >= 0 && !scene.bodies[body].fixed) linkages.back().bodies.push_back({body});
   return linkages.back();
 }
 
@@ -34,8 +33,7 @@ std::vector<Linkage> linkages_of(const Scene& scene) {
   std::vector<Linkage> linkages;
   for (std::size_t j = 0; j < scene.joints.size(); ++j) {
     const Joint& joint = scene.joints[j];
-    const bool alone =
-        joint.parent == Joint::kWorld || scene.bodies[static_cast<std::size_t>(joint.parent)].fixed;
+    const bool alone = joint.parent == Joint::kWorld || scene.bodies[joint.parent].fixed;
     Linkage& linkage = linkage_of(scene, alone ? LinkageBody::kNone : joint.parent, linkages);
     LinkageBody link{joint.child, static_cast<int>(j)};
     link.parent = alone ? LinkageBody::kNone : place_of(linkage, joint.parent);
@@ -60,16 +58,15 @@ LinkageMotion::LinkageMotion(const Scene& scene, const Linkage& linkage)
 /// are normalised against accumulated rounding.
 void LinkageMotion::place(const Pose& root, const Vector& positions) {
   for (int i = 0; i < size(); ++i) {
-    Placed& placed = placed_[static_cast<std::size_t>(i)];
-    const LinkageBody& link = linkage_.bodies[static_cast<std::size_t>(i)];
+    Placed& placed = placed_[i];
+    const LinkageBody& link = linkage_.bodies[i];
     if (link.joint == LinkageBody::kNone) {
       placed.pose = root;
     } else {
       const Joint& on = joint(i);
-      const Pose parent = link.parent != LinkageBody::kNone ? at(link.parent).pose
-                          : link.fixture != LinkageBody::kNone
-                              ? scene_.bodies[static_cast<std::size_t>(link.fixture)].start
-                              : Pose();
+      const Pose parent = link.parent != LinkageBody::kNone    ? at(link.parent).pose
+                          : link.fixture != LinkageBody::kNone ? scene_.bodies[link.fixture].start
+                                                               : Pose();
       const Pose frame = parent * on.in_parent;
       const double position = positions[i - (linkage_.floats() ? 1 : 0)];
       placed.axis = frame.orientation * on.axis;
@@ -88,8 +85,8 @@ void LinkageMotion::place(const Pose& root, const Vector& positions) {
 void LinkageMotion::push(int body, const Vector3& impulse, const Vector3& moment,
                          Eigen::Ref<Vector> momenta) const {
   const Vector3& centre = at(body).pose.position;
-  for (int i = body; i != LinkageBody::kNone; i = linkage_.bodies[static_cast<std::size_t>(i)].parent) {
-    if (linkage_.bodies[static_cast<std::size_t>(i)].joint == LinkageBody::kNone) {
+  for (int i = body; i != LinkageBody::kNone; i = linkage_.bodies[i].parent) {
+    if (linkage_.bodies[i].joint == LinkageBody::kNone) {
       momenta.segment<3>(0) += impulse;
       momenta.segment<3>(3) += moment + (centre - at(i).pose.position).cross(impulse);
     } else if (joint(i).kind == JointKind::sliding) {
@@ -109,8 +106,8 @@ void LinkageMotion::push(int body, const Vector3& impulse, const Vector3& moment
 /// Only joints between the body and the root move it; all other columns are 0. push() is the transpose.
 void LinkageMotion::add_jacobian(int body, Eigen::Ref<Matrix> rows) const {
   const Vector3& centre = at(body).pose.position;
-  for (int i = body; i != LinkageBody::kNone; i = linkage_.bodies[static_cast<std::size_t>(i)].parent) {
-    if (linkage_.bodies[static_cast<std::size_t>(i)].joint == LinkageBody::kNone) {
+  for (int i = body; i != LinkageBody::kNone; i = linkage_.bodies[i].parent) {
+    if (linkage_.bodies[i].joint == LinkageBody::kNone) {
       rows.block<3, 3>(0, 0).setIdentity();
       rows.block<3, 3>(0, 3) = -cross_matrix(centre - at(i).pose.position);
       rows.block<3, 3>(3, 3).setIdentity();
@@ -157,8 +154,8 @@ void LinkageMotion::weigh() {
 ///     w = w_p,            v = v_p + w_p x (c - c_p) + q' a                      slides
 void LinkageMotion::move(const Vector& velocity) {
   for (int i = 0; i < size(); ++i) {
-    Placed& placed = placed_[static_cast<std::size_t>(i)];
-    const LinkageBody& link = linkage_.bodies[static_cast<std::size_t>(i)];
+    Placed& placed = placed_[i];
+    const LinkageBody& link = linkage_.bodies[i];
     if (link.joint == LinkageBody::kNone) {
       placed.linear = velocity.segment<3>(0);
       placed.angular = velocity.segment<3>(3);
@@ -192,18 +189,17 @@ void LinkageMotion::move(const Vector& velocity) {
 /// moves it to o.
 void LinkageMotion::find_rates(const Vector3& gravity, Vector& rates) {
   for (int i = size() - 1; i >= 0; --i) {
-    const auto at_i = static_cast<std::size_t>(i);
-    const Placed& placed = placed_[at_i];
+    const Placed& placed = placed_[i];
     const double mass = body(i).mass;
     const Vector3 momentum = mass * placed.linear;
-    carried_[at_i] = {mass, momentum, placed.inertia * placed.angular + placed.pose.position.cross(momentum),
-                      mass * placed.pose.position};
+    carried_[i] = {mass, momentum, placed.inertia * placed.angular + placed.pose.position.cross(momentum),
+                   mass * placed.pose.position};
   }
   for (int i = size() - 1; i >= 0; --i) {
-    const LinkageBody& link = linkage_.bodies[static_cast<std::size_t>(i)];
-    const Carried& carried = carried_[static_cast<std::size_t>(i)];
+    const LinkageBody& link = linkage_.bodies[i];
+    const Carried& carried = carried_[i];
     if (link.parent != LinkageBody::kNone) {
-      Carried& below = carried_[static_cast<std::size_t>(link.parent)];
+      Carried& below = carried_[link.parent];
       below.mass += carried.mass;
       below.momentum += carried.momentum;
       below.angular_momentum += carried.angular_momentum;
@@ -242,11 +238,9 @@ void put_back(std::size_t body, const Scene& scene, SimulationState& state) {
     const auto is_it = [body](const LinkageBody& link) { return link.body == static_cast<int>(body); };
     if (std::none_of(linkage.bodies.begin(), linkage.bodies.end(), is_it)) continue;
     for (const LinkageBody& link : linkage.bodies) {
-      const auto b = static_cast<std::size_t>(link.body);
+      const std::size_t b = link.body;
       if (b != body) place(b, start_state(scene.bodies[b]), state);
-      if (link.joint == LinkageBody::kNone) continue;
-      const auto j = static_cast<std::size_t>(link.joint);
-      state.joints[j] = start_state(scene.joints[j]);
+      if (link.joint != LinkageBody::kNone) state.joints[link.joint] = start_state(scene.joints[link.joint]);
     }
   }
 }

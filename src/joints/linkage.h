@@ -64,14 +64,10 @@ class LinkageMotion {
   /// Rates of the joints' momenta by gravity [m/s^2] and by the motion of their axes.
   void find_rates(const Vector3& gravity, Vector& rates);
 
-  const Placed& at(int body) const { return placed_[static_cast<std::size_t>(body)]; }
+  const Placed& at(int body) const { return placed_[body]; }
   const Matrix& mass() const { return mass_; }
-  const Body& body(int i) const {
-    return scene_.bodies[static_cast<std::size_t>(linkage_.bodies[static_cast<std::size_t>(i)].body)];
-  }
-  const Joint& joint(int i) const {
-    return scene_.joints[static_cast<std::size_t>(linkage_.bodies[static_cast<std::size_t>(i)].joint)];
-  }
+  const Body& body(int i) const { return scene_.bodies[linkage_.bodies[i].body]; }
+  const Joint& joint(int i) const { return scene_.joints[linkage_.bodies[i].joint]; }
   int size() const { return static_cast<int>(placed_.size()); }
   double total_mass() const { return total_mass_; }
   Vector3 centre_of_mass() const;

@@ -24,7 +24,7 @@ constexpr int kMaxIterations = 60;
 constexpr double kConverged = 1e-16;
 
 const BodyState& of(const Linkage& linkage, int i, const std::vector<BodyState>& bodies) {
-  return bodies[static_cast<std::size_t>(linkage.bodies[static_cast<std::size_t>(i)].body)];
+  return bodies[linkage.bodies[i].body];
 }
 
 /// Exponential map of a rotation vector.
@@ -59,11 +59,10 @@ LinkageFlight::LinkageFlight(const Scene& scene, const Linkage& linkage)
 void LinkageFlight::read(const std::vector<JointState>& joints, const std::vector<BodyState>& bodies) {
   int joint = 0;
   for (const LinkageBody& link : linkage_.bodies) {
-    if (link.joint != LinkageBody::kNone)
-      now_.positions[joint++] = joints[static_cast<std::size_t>(link.joint)].position;
+    if (link.joint != LinkageBody::kNone) now_.positions[joint++] = joints[link.joint].position;
   }
   now_.turn.setZero();
-  root_ = bodies[static_cast<std::size_t>(linkage_.bodies.front().body)].pose.orientation;
+  root_ = bodies[linkage_.bodies.front().body].pose.orientation;
 }
 
 /// Computes the unknowns' velocities; those of a floating linkage in the frame of its centre of mass.
@@ -262,7 +261,7 @@ void LinkageFlight::fly_free(const Vector3& gravity, double step, std::vector<Jo
   advance_by_parts(Vector3::Zero(), step);
   const Vector3 centre = start.centre + step * drift + (0.5 * step * step) * gravity;
   write(centre - motion_.centre_of_mass(), drift + step * gravity, joints, bodies);
-  BodyState& root = bodies[static_cast<std::size_t>(linkage_.bodies.front().body)];
+  BodyState& root = bodies[linkage_.bodies.front().body];
   root.linear_momentum += start.linear + (motion_.total_mass() * step) * gravity - whole(bodies).linear;
   root.angular_momentum += start.angular - whole(bodies).angular;
 }
@@ -271,11 +270,10 @@ void LinkageFlight::write(const Vector3& place, const Vector3& velocity, std::ve
                           std::vector<BodyState>& bodies) {
   int joint = 0;
   for (int i = 0; i < motion_.size(); ++i) {
-    const LinkageBody& link = linkage_.bodies[static_cast<std::size_t>(i)];
-    if (link.joint != LinkageBody::kNone)
-      joints[static_cast<std::size_t>(link.joint)].position = now_.positions[joint++];
+    const LinkageBody& link = linkage_.bodies[i];
+    if (link.joint != LinkageBody::kNone) joints[link.joint].position = now_.positions[joint++];
     const LinkageMotion::Placed& placed = motion_.at(i);
-    BodyState& state = bodies[static_cast<std::size_t>(link.body)];
+    BodyState& state = bodies[link.body];
     state.pose = {placed.pose.position + place, placed.pose.orientation};
     state.linear_momentum = motion_.body(i).mass * (placed.linear + velocity);
     state.angular_momentum = placed.inertia * placed.angular;

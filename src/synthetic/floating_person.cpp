@@ -61,7 +61,7 @@ FloatingPerson::FloatingPerson(const OperatorSkill& skill, std::vector<FloatingG
     throw std::invalid_argument(
         "a simulated operator does a goal 'rest' only afloat: the task's scene has no " +
         std::string("operator; allowed: a scene with 'operator' in its YAML file"));
-  const Body& person = surroundings.bodies.at(static_cast<std::size_t>(surroundings.operators.front().body));
+  const Body& person = surroundings.bodies.at(surroundings.operators.front().body);
   link_in_body_ = person.link_in_body;
   mass_ = person.mass;
   inertia_ = person.inertia;

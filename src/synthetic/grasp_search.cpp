@@ -39,7 +39,7 @@ class Surface {
       const TriangleMesh mesh = surface_of(shape);
       all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
       for (const auto& triangle : mesh.triangles) {
-        const auto corner = [&](int i) { return mesh.vertices[std::size_t(triangle[std::size_t(i)])]; };
+        const auto corner = [&](int i) { return mesh.vertices[triangle[i]]; };
         const Vector3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
         if (normal.norm() > 0.0) triangles_.push_back({corner(0), corner(1), corner(2), normal});
       }
@@ -306,7 +306,7 @@ Misses misses(const Grasp& grasp, double gap) {
   const HandPosture preferred = within_limits(human_hand(), grasp.preferred);
   Misses worst{0.0, 0.0};
   for (const FingertipContact& contact : grasp.contacts) {
-    const FingerSkeleton& finger = human_hand().fingers[std::size_t(contact.finger)];
+    const FingerSkeleton& finger = human_hand().fingers[contact.finger];
     const double height = finger.radius + (gap < 0.0 ? -contact.depth : gap);
     const Vector3 target = grasp.wrist.to_local(contact.point + height * contact.normal);
     const double error = reach(finger, target, preferred.col(contact.finger), kIterations).error;

@@ -70,54 +70,46 @@ FingertipContact ball_contact(int finger, double azimuth, double depth) {
 
 struct GraspEntry {
   const char* name;  ///< of the object
-  Grasp (*make)();
+  Grasp grasp;
 };
-const GraspEntry kGrasps[] = {
-    {"cube",
-     [] {
-       return Grasp{
-           hand_pose({0.0117, -0.0406, 0.1056}, {-0.122, 0.925, -0.359}, {-0.137, 0.342, 0.929}),
-           opposed_contacts(0.05, 0.0175),
-           posture_of_degrees(
-               {{25, 0, 0, 0, -4}, {0, 50, 50, 50, 55}, {15, 35, 38, 38, 45}, {30, 25, 25, 25, 30}, {30}}),
-           0.018, Vector3::UnitZ()};
-     }},
-    // All five fingertips on the equator, so that they cannot squeeze the ball out; the palm above.
-    {"ball",
-     [] {
-       return Grasp{
-           hand_pose({0.0372, -0.0292, 0.0985}, {-0.342, 0.848, -0.405}, {0.099, 0.462, 0.881}),
-           {ball_contact(0, 180.0, kBallThumbDepth), ball_contact(1, -57.0, kBallFingerDepth),
-            ball_contact(2, -17.0, kBallFingerDepth), ball_contact(3, 20.0, kBallFingerDepth),
-            ball_contact(4, 54.0, kBallFingerDepth)},
-           posture_of_degrees(
-               {{28, 4, 0, -2, -6}, {0, 40, 42, 42, 42}, {15, 40, 42, 42, 40}, {30, 28, 28, 28, 28}, {30}}),
-           0.018,
-           Vector3::UnitZ()};
-     }},
-    {"long_cuboid",
-     [] {
-       return Grasp{
-           hand_pose({0.0186, -0.0443, 0.1067}, {-0.296, 0.878, -0.377}, {-0.246, 0.311, 0.918}),
-           opposed_contacts(0.02, 0.018),
-           posture_of_degrees(
-               {{25, 0, 0, 0, -4}, {5, 50, 50, 50, 55}, {15, 38, 38, 38, 45}, {30, 25, 25, 25, 30}, {35}}),
-           0.018, Vector3::UnitZ()}
-           .turned(turn(90.0, Vector3::UnitY()));
-     }},
-    {"flat_cuboid", [] {
-       const Vector3 up = Vector3::UnitZ();
-       return Grasp{
-           hand_pose({0.001, -0.0859, -0.0371}, {0.278, 0.774, -0.568}, {0.399, -0.631, -0.665}),
-           {{0, {0.0, -0.010, 0.006}, up, kThumbDepth},
-            {1, {0.018, -0.010, -0.006}, -up, kFingerDepth},
-            {2, {0.0, -0.010, -0.006}, -up, kFingerDepth},
-            {3, {-0.018, -0.010, -0.006}, -up, kFingerDepth}},
-           posture_of_degrees(
-               {{30, 0, 0, 0, -2}, {5, 60, 60, 60, 55}, {15, 35, 38, 38, 40}, {25, 22, 22, 22, 22}, {30}}),
-           0.015,
-           -Vector3::UnitY()};
-     }}};
+const std::vector<GraspEntry>& shipped_grasps() {
+  const Vector3 up = Vector3::UnitZ();
+  static const std::vector<GraspEntry> all{
+      {"cube",
+       Grasp{hand_pose({0.0117, -0.0406, 0.1056}, {-0.122, 0.925, -0.359}, {-0.137, 0.342, 0.929}),
+             opposed_contacts(0.05, 0.0175),
+             posture_of_degrees(
+                 {{25, 0, 0, 0, -4}, {0, 50, 50, 50, 55}, {15, 35, 38, 38, 45}, {30, 25, 25, 25, 30}, {30}}),
+             0.018, Vector3::UnitZ()}},
+      // All five fingertips on the equator, so that they cannot squeeze the ball out; the palm above.
+      {"ball",
+       Grasp{hand_pose({0.0372, -0.0292, 0.0985}, {-0.342, 0.848, -0.405}, {0.099, 0.462, 0.881}),
+             {ball_contact(0, 180.0, kBallThumbDepth), ball_contact(1, -57.0, kBallFingerDepth),
+              ball_contact(2, -17.0, kBallFingerDepth), ball_contact(3, 20.0, kBallFingerDepth),
+              ball_contact(4, 54.0, kBallFingerDepth)},
+             posture_of_degrees(
+                 {{28, 4, 0, -2, -6}, {0, 40, 42, 42, 42}, {15, 40, 42, 42, 40}, {30, 28, 28, 28, 28}, {30}}),
+             0.018,
+             Vector3::UnitZ()}},
+      {"long_cuboid",
+       Grasp{hand_pose({0.0186, -0.0443, 0.1067}, {-0.296, 0.878, -0.377}, {-0.246, 0.311, 0.918}),
+             opposed_contacts(0.02, 0.018),
+             posture_of_degrees(
+                 {{25, 0, 0, 0, -4}, {5, 50, 50, 50, 55}, {15, 38, 38, 38, 45}, {30, 25, 25, 25, 30}, {35}}),
+             0.018, Vector3::UnitZ()}
+           .turned(turn(90.0, Vector3::UnitY()))},
+      {"flat_cuboid",
+       Grasp{hand_pose({0.001, -0.0859, -0.0371}, {0.278, 0.774, -0.568}, {0.399, -0.631, -0.665}),
+             {{0, {0.0, -0.010, 0.006}, up, kThumbDepth},
+              {1, {0.018, -0.010, -0.006}, -up, kFingerDepth},
+              {2, {0.0, -0.010, -0.006}, -up, kFingerDepth},
+              {3, {-0.018, -0.010, -0.006}, -up, kFingerDepth}},
+             posture_of_degrees(
+                 {{30, 0, 0, 0, -2}, {5, 60, 60, 60, 55}, {15, 35, 38, 38, 40}, {25, 22, 22, 22, 22}, {30}}),
+             0.015,
+             -Vector3::UnitY()}}};
+  return all;
+}
 
 }  // namespace
 
@@ -152,7 +144,7 @@ HandPosture place_fingertips(const HandSkeleton& skeleton, const Pose& wrist,
   HandPosture posture = within_limits(skeleton, preferred);
   double worst = 0.0;
   for (const FingertipContact& contact : contacts) {
-    const FingerSkeleton& finger = skeleton.fingers[static_cast<std::size_t>(contact.finger)];
+    const FingerSkeleton& finger = skeleton.fingers[contact.finger];
     const double height = finger.radius + (gap < 0.0 ? -contact.depth : gap);
     const Vector3 target = wrist.to_local(contact.point + height * contact.normal);
     const Reach result = reach(finger, target, preferred.col(contact.finger));
@@ -186,16 +178,14 @@ GraspPostures::GraspPostures(const Grasp& grasp) {
 }
 
 Grasp grasp_of(const Body& body) {
-  for (const GraspEntry& entry : kGrasps)
-    if (body.name == entry.name) return entry.make();
-  return find_grasp(body);
+  const GraspEntry* const shipped = text::find_named(shipped_grasps(), body.name);
+  return shipped != nullptr ? shipped->grasp : find_grasp(body);
 }
 
 Grasp shipped_grasp(const std::string& object) {
-  for (const GraspEntry& entry : kGrasps)
-    if (object == entry.name) return entry.make();
+  if (const GraspEntry* const shipped = text::find_named(shipped_grasps(), object)) return shipped->grasp;
   throw std::invalid_argument("no grasp of '" + object + "' is known: use one of " +
-                              text::joined(text::names_of(kGrasps)));
+                              text::joined(text::names_of(shipped_grasps())));
 }
 
 GripPostures::GripPostures(const Grasp& grasp, double deepest) : deepest_(deepest) {

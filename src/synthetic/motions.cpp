@@ -382,14 +382,13 @@ std::vector<std::string> motion_names() {
 }
 
 ScriptedMotion make_motion(const std::string& name) {
-  for (const MotionEntry& entry : kMotions) {
-    if (name != entry.name) continue;
-    ScriptedMotion motion = entry.make();
-    motion.name = name;
-    return motion;
-  }
-  throw std::invalid_argument("motion '" + name + "' is not known: use one of " +
-                              text::joined(motion_names()));
+  const MotionEntry* const entry = text::find_named(kMotions, name);
+  if (entry == nullptr)
+    throw std::invalid_argument("motion '" + name + "' is not known: use one of " +
+                                text::joined(motion_names()));
+  ScriptedMotion motion = entry->make();
+  motion.name = name;
+  return motion;
 }
 
 }  // namespace mrhi

@@ -40,8 +40,8 @@ FingerSkeleton skeleton_of(const Anatomy& a) {
   }
   finger.radius = 1e-3 * a.radius;
   for (int joint = 0; joint < kFingerJoints; ++joint) {
-    finger.lower[joint] = a.lower[static_cast<std::size_t>(joint)] * kDegree;
-    finger.upper[joint] = a.upper[static_cast<std::size_t>(joint)] * kDegree;
+    finger.lower[joint] = a.lower[joint] * kDegree;
+    finger.upper[joint] = a.upper[joint] * kDegree;
   }
   return finger;
 }
@@ -122,7 +122,7 @@ std::array<Vector3, 5> finger_joints(const FingerSkeleton& finger, const FingerA
 HandPosture within_limits(const HandSkeleton& skeleton, const HandPosture& posture) {
   HandPosture limited = posture;
   for (int finger = 0; finger < kFingers; ++finger) {
-    const FingerSkeleton& limits = skeleton.fingers[static_cast<std::size_t>(finger)];
+    const FingerSkeleton& limits = skeleton.fingers[finger];
     limited.col(finger) = posture.col(finger).cwiseMax(limits.lower).cwiseMin(limits.upper);
   }
   return limited;

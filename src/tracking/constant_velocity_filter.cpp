@@ -70,8 +70,7 @@ std::optional<double> median_product(const SampleHistory& history, const Weights
   std::ptrdiff_t count = 0;
   for (std::size_t c = 0; c < kPhalanges; ++c) {
     if (!is_in_all(history, c)) continue;
-    products[static_cast<std::size_t>(count++)] =
-        -difference_of(history, 0, c, now).dot(difference_of(history, 1, c, before));
+    products[count++] = -difference_of(history, 0, c, now).dot(difference_of(history, 1, c, before));
   }
   if (count == 0) return std::nullopt;
   const auto middle = products.begin() + count / 2;

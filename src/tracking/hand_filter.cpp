@@ -18,13 +18,6 @@ auto& point_of(AnyHand& hand, std::size_t point) {
   return point % 2 == 0 ? capsule.start : capsule.end;
 }
 
-std::vector<FilterSetting> settings_of_all() {
-  std::vector<FilterSetting> all;
-  for (const HandFilter* filter : hand_filters())
-    for (const FilterSetting& setting : filter->settings()) all.push_back(setting);
-  return all;
-}
-
 }  // namespace
 
 /// elapsed[i] goes with samples[i]: since the sample before it, which is samples[i + 1].
@@ -84,8 +77,13 @@ const HandFilter& hand_filter(FilterKind kind) {
 }
 
 const std::vector<FilterSetting>& filter_settings() {
-  static const std::vector<FilterSetting> settings = settings_of_all();
-  return settings;
+  static const std::vector<FilterSetting> all = [] {
+    std::vector<FilterSetting> settings;
+    for (const HandFilter* filter : hand_filters())
+      for (const FilterSetting& setting : filter->settings()) settings.push_back(setting);
+    return settings;
+  }();
+  return all;
 }
 
 FilterConfiguration filter_of(const Configuration& configuration) {

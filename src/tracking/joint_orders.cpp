@@ -278,9 +278,14 @@ const std::vector<JointOrder>& joint_orders() {
   return orders;
 }
 
-const JointOrder& joint_order(const std::string& name) {
+const JointOrder* usual_order(std::size_t size) {
   for (const JointOrder& order : joint_orders())
-    if (order.name == name) return order;
+    if (order.size == size) return &order;
+  return nullptr;
+}
+
+const JointOrder& joint_order(const std::string& name) {
+  if (const JointOrder* const order = text::find_named(joint_orders(), name)) return *order;
   throw std::invalid_argument("order '" + text::one_line(name, 60) +
                               "' is not known; allowed: " + names_of(0));
 }
@@ -308,8 +313,7 @@ const JointOrder& OrderRecognition::order_of(std::size_t size, const Vector3* po
   if (size != size_) {
     size_ = size;
     misfits_.assign(orders.size(), std::nullopt);
-    chosen_ = &*std::find_if(orders.begin(), orders.end(),
-                             [=](const JointOrder& order) { return order.size == size; });
+    chosen_ = usual_order(size);
   }
   std::size_t best = orders.size();
   const auto now = static_cast<std::size_t>(chosen_ - orders.data());

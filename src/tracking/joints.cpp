@@ -136,9 +136,7 @@ const char* const kBoneNames[kBonesPerFinger] = {"metacarpal", "proximal", "inte
 using Name = std::initializer_list<const char*>;
 
 std::string joined(Name name) {
-  std::string text;
-  for (const char* const word : name) text += (text.empty() ? "" : " ") + std::string(word);
-  return text;
+  return text::joined({name.begin(), name.end()}, " ");
 }
 
 std::string point_defect(Name name, const std::optional<Vector3>& point) {

@@ -53,6 +53,8 @@ struct JointOrder {
 
 /// All known orders. The usual one of each size comes first.
 const std::vector<JointOrder>& joint_orders();
+/// The usual order of that size; null if there is none.
+const JointOrder* usual_order(std::size_t size);
 /// Throws std::invalid_argument that lists the known names.
 const JointOrder& joint_order(const std::string& name);
 

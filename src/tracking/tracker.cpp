@@ -191,17 +191,13 @@ constexpr double kFilterTransition = 0.2;
 
 using Assignment = std::array<int, kMaxHands>;  // slot -> index in the frame, -1: none
 
-bool is_assigned(const Assignment& assignment, int hand) {
-  return std::find(assignment.begin(), assignment.end(), hand) != assignment.end();
-}
-
 template <typename Fits>
 void assign(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands, Fits fits,
             Assignment& assignment) {
   for (std::size_t slot = 0; slot < hands.size(); ++slot) {
     for (int i = 0; i < static_cast<int>(seen.size()) && assignment[slot] < 0; ++i) {
-      if (!is_assigned(assignment, i) && fits(hands[slot], seen[static_cast<std::size_t>(i)]))
-        assignment[slot] = i;
+      const bool assigned = std::find(assignment.begin(), assignment.end(), i) != assignment.end();
+      if (!assigned && fits(hands[slot], seen[i])) assignment[slot] = i;
     }
   }
 }
@@ -209,10 +205,6 @@ void assign(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands, 
 /// True for a free slot with a noise estimate of hands of this side.
 bool was_last_here(const HandTrack& track, const Hand& hand) {
   return !track.active && track.filter.noise.size > 0 && track.current.side == hand.side;
-}
-
-bool knows_nothing(const HandTrack& track, const Hand&) {
-  return !track.active && track.filter.noise.size == 0;
 }
 
 /// Applies criteria in order of certainty, each to all slots: id and side; id alone (a tracker that confuses
@@ -239,7 +231,10 @@ Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTra
       },
       assignment);
   assign(seen, hands, was_last_here, assignment);
-  assign(seen, hands, knows_nothing, assignment);
+  assign(
+      seen, hands,
+      [](const HandTrack& track, const Hand&) { return !track.active && track.filter.noise.size == 0; },
+      assignment);
   assign(
       seen, hands, [](const HandTrack& track, const Hand&) { return !track.active; }, assignment);
   return assignment;
@@ -352,7 +347,7 @@ void track_hands(const HandFrame& frame, const Configuration& configuration, std
       if (track.active) hold(track);
       continue;
     }
-    Hand hand = frame.hands[static_cast<std::size_t>(assignment[slot])];
+    Hand hand = frame.hands[assignment[slot]];
     for (Capsule& capsule : hand.capsules) capsule.radius *= configuration.hand_radius_scale;
     if (track.active) {
       follow(hand, frame.stamp, configuration, track);

@@ -12,7 +12,7 @@ namespace {
 Quaternion mean_orientation(const SampleHistory& history, int count) {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   for (int i = 0; i < count; ++i) {
-    const Eigen::Vector4d q = history.samples[static_cast<std::size_t>(i)].palm.orientation.coeffs();
+    const Eigen::Vector4d q = history.samples[i].palm.orientation.coeffs();
     sum += q * q.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
@@ -28,9 +28,8 @@ Quaternion mean_orientation(const SampleHistory& history, int count) {
 Capsule mean_capsule(const SampleHistory& history, int count, std::size_t capsule) {
   Capsule sum;
   int present = 0;
-  while (present < count &&
-         history.samples[static_cast<std::size_t>(present)].capsules[capsule].radius > 0.0) {
-    const Capsule& sample = history.samples[static_cast<std::size_t>(present)].capsules[capsule];
+  while (present < count && history.samples[present].capsules[capsule].radius > 0.0) {
+    const Capsule& sample = history.samples[present].capsules[capsule];
     sum.start += sample.start;
     sum.end += sample.end;
     sum.radius += sample.radius;
@@ -54,7 +53,7 @@ Hand window_mean(double, const FilterConfiguration& filter, FilterMemory& memory
   const double gain = filter.as_printed ? (filter.window + 1.0) / filter.window : 1.0;
   if (count == 1 && gain == 1.0) return mean;
   for (int i = 1; i < count; ++i) {
-    const Hand& sample = history.samples[static_cast<std::size_t>(i)];
+    const Hand& sample = history.samples[i];
     mean.palm.position += sample.palm.position;
     mean.wrist += sample.wrist;
     mean.palm_width += sample.palm_width;

@@ -52,10 +52,10 @@ void make_device(const TaskObject& object, const std::string& urdf, const SceneO
   model.request.pose = object.start;
   model.scene = requested_scene(model.request, options);
   const std::optional<int> body = find_body(model.scene, object.name);
-  if (!body || hanging_on(static_cast<std::size_t>(*body), model.scene).size() != model.scene.bodies.size())
+  if (!body || hanging_on(*body, model.scene).size() != model.scene.bodies.size())
     throw SceneError(object.file + ": not all hangs on a link '" + object.name +
                      "'; allowed: the name of that on which all others hang");
-  model.body = static_cast<std::size_t>(*body);
+  model.body = *body;
 }
 
 void make_body(const TaskObject& object, const std::string& urdf, const Scene& scene, ObjectModel& model) {

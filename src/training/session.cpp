@@ -76,8 +76,7 @@ std::string sha256(const std::string& bytes) {
 
 std::string parameters_text(const Configuration& configuration) {
   std::string all;
-  for (const std::string& name : parameter_names())
-    all += name + ": " + parameter_text(configuration, name) + '\n';
+  for (const auto& [name, text] : parameter_texts(configuration)) all += name + ": " + text + '\n';
   return all;
 }
 
