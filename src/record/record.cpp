@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <stdexcept>
 
@@ -30,12 +29,6 @@ constexpr std::size_t kMaxYamlBytes = 4u << 20;
   throw std::invalid_argument("recorded change: " + what + "; allowed: what this package has recorded");
 }
 
-void write(const fs::path& file, const std::string& text) {
-  std::ofstream out = file_to_write(file.string());
-  out << text << std::flush;
-  if (!out) throw std::runtime_error("cannot write " + file.string());
-}
-
 YAML::Node recorded_yaml(const std::string& yaml) {
   try {
     return load_yaml("recorded change", yaml, kMaxYamlBytes);
@@ -48,12 +41,6 @@ std::string text_in(const YAML::Node& node, const char* key) {
   const YAML::Node value = node.IsMap() ? node[key] : YAML::Node(YAML::NodeType::Undefined);
   if (!value || !value.IsScalar()) refuse(std::string("no '") + key + "'");
   return value.Scalar();
-}
-
-const RecordedFile* find_file(const RecordedFiles& files, const std::string& name) {
-  for (const RecordedFile& file : files)
-    if (file.name == name) return &file;
-  return nullptr;
 }
 
 /// File name of a spawned URDF. A whole URDF may have no name: a hash of its text names it (FNV-1a).
@@ -128,7 +115,7 @@ ObjectRequest request_in(const YAML::Node& node, const RecordedFiles& files) {
   ObjectRequest request;
   request.name = text_in(node, "name");
   if (node["urdf"]) {
-    const RecordedFile* file = find_file(files, text_in(node, "urdf"));
+    const RecordedFile* file = text::find_named(files, text_in(node, "urdf"));
     if (file == nullptr) refuse("the URDF of '" + text::one_line(request.name, 60) + "' is missing");
     request.urdf = file->bytes;
   } else {
@@ -227,12 +214,10 @@ std::string text_of(const fs::path& file) {
 
 void add_files(const RecordedFiles& files, World& world) {
   for (const RecordedFile& file : files) {
-    const auto known = std::find_if(world.files.begin(), world.files.end(),
-                                    [&](const RecordedFile& other) { return other.name == file.name; });
-    if (known == world.files.end()) {
-      world.files.push_back(file);
-    } else {
+    if (RecordedFile* const known = text::find_named(world.files, file.name)) {
       *known = file;
+    } else {
+      world.files.push_back(file);
     }
   }
 }
@@ -245,12 +230,12 @@ std::vector<std::string> roots_of(const Scene& part) {
 }
 
 Scene scene_of_files(const World& world, const SceneOptions& options, const std::string& folder) {
-  const RecordedFile* urdf = find_file(world.files, kUrdf);
+  const RecordedFile* urdf = text::find_named(world.files, kUrdf);
   if (urdf == nullptr) throw SceneError("the recording has no scene.urdf; allowed: one that has");
   const fs::path file = fs::path(folder) / (world.scene + ".urdf");
-  write(file, urdf->bytes);
-  if (const RecordedFile* yaml = find_file(world.files, kYaml))
-    write(fs::path(folder) / (world.scene + ".yaml"), yaml->bytes);
+  write_file(file, urdf->bytes);
+  if (const RecordedFile* yaml = text::find_named(world.files, kYaml))
+    write_file(fs::path(folder) / (world.scene + ".yaml"), yaml->bytes);
   return load_scene(file.string(), options);
 }
 
@@ -278,7 +263,7 @@ std::map<std::string, std::string> written_to(const std::string& folder, const R
     };
     int i = 0;  // files of changes before this one stay
     while (is_other(numbered(i))) ++i;
-    write(numbered(i), file.bytes);
+    write_file(numbered(i), file.bytes);
     paths[file.name] = numbered(i);
   }
   return paths;
@@ -335,13 +320,8 @@ World world_of_file(const std::string& urdf_file, const Scene& scene, const Conf
   const fs::path yaml = fs::path(urdf_file).replace_extension(".yaml");
   if (fs::exists(yaml)) world.files.push_back({kYaml, text_of(yaml)});
   add_files(contents_of(scene.mesh_files), world);
-  set_parameters(configuration, world);
+  world.parameters = parameter_texts(configuration);
   return world;
-}
-
-void set_parameters(const Configuration& configuration, World& world) {
-  for (const std::string& name : parameter_names())
-    world.parameters[name] = parameter_text(configuration, name);
 }
 
 void note(const Change& change, const LiveSimulation& simulation, World& world) {
@@ -365,7 +345,7 @@ void note(const Change& change, const LiveSimulation& simulation, World& world) 
     for (auto mode = world.grasps.begin(); mode != world.grasps.end();)
       mode = find_body(scene, mode->first) ? std::next(mode) : world.grasps.erase(mode);
   } else if (const auto* set = std::get_if<SetParameters>(&change)) {
-    set_parameters(configuration, world);
+    world.parameters = parameter_texts(configuration);
     for (const auto& [name, value] : set->values)
       if (const auto object = grasp_parameter(name)) world.grasps[*object] = value;
   }
@@ -427,19 +407,18 @@ Scene scene_of(const World& world, const Configuration& configuration, const std
   std::vector<std::string> gone_since;
   for (const std::string& name : world.removed) {
     if (const std::optional<int> body = find_body(scene, name)) {
-      remove_body(static_cast<std::size_t>(*body), scene);
+      remove_body(*body, scene);
     } else {
       gone_since.push_back(name);
     }
   }
   for (const Added& added : world.added) append(requested_scene(added.request, options), scene);
   for (const std::string& name : gone_since) {
-    if (const std::optional<int> body = find_body(scene, name))
-      remove_body(static_cast<std::size_t>(*body), scene);
+    if (const std::optional<int> body = find_body(scene, name)) remove_body(*body, scene);
   }
   for (const auto& [name, mode] : world.grasps) {
     if (const std::optional<int> body = find_body(scene, name))
-      scene.bodies[static_cast<std::size_t>(*body)].grasp = grasp_mode(mode).value_or(GraspMode::parameter);
+      scene.bodies[*body].grasp = grasp_mode(mode).value_or(GraspMode::parameter);
   }
   return scene;
 }

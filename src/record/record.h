@@ -101,7 +101,6 @@ struct World {
 
 /// Creates the World of a scene's file: reads the file, its YAML, and the meshes of the loaded `scene`.
 World world_of_file(const std::string& urdf_file, const Scene& scene, const Configuration& configuration);
-void set_parameters(const Configuration& configuration, World& world);
 
 /// Records a change that has been applied.
 void note(const Change& change, const LiveSimulation& simulation, World& world);
@@ -132,15 +131,19 @@ struct LogEntry {
   std::uint64_t lost = 0;          ///< frames that have not reached the node, so far
 };
 
-/// The recorded inputs of a live simulation, in order.
-class LogSource {
+/// What a recording holds, in the order in which it was recorded.
+template <class Item>
+class Source {
  public:
-  virtual ~LogSource() = default;
-  /// Returns the next input; empty at the end. Throws std::exception with one line if the rest cannot be
-  /// read.
-  virtual std::optional<LogEntry> next() = 0;
+  virtual ~Source() = default;
+  /// Returns the next item; empty at the end. Throws std::exception with one line if the rest cannot be read.
+  virtual std::optional<Item> next() = 0;
+  /// Number of messages read so far, and in all. The hands of a frame may be in separate messages.
   virtual std::size_t position() const = 0;
   virtual std::size_t size() const = 0;
 };
+
+/// The recorded inputs of a live simulation.
+using LogSource = Source<LogEntry>;
 
 }  // namespace mrhi

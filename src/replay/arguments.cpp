@@ -41,11 +41,8 @@ std::string object_name(const Given& given) {
 }
 
 std::string order(const Given& given) {
-  try {
-    return joint_order(given.text).name;
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(given.option + ": " + error.what());
-  }
+  return rethrown<UsageError, std::invalid_argument>(given.option + ": ",
+                                                     [&] { return joint_order(given.text).name; });
 }
 
 /// `zero`: what 0 stands for where it is allowed, for messages.

@@ -2,10 +2,7 @@
 
 #include <mr_hand_interaction/HandFrame.h>
 #include <mr_hand_interaction/SimulationInput.h>
-#include <ros/exception.h>
-#include <ros/message_traits.h>
 #include <rosbag/bag.h>
-#include <rosbag/exceptions.h>
 #include <rosbag/view.h>
 #include <tf2_msgs/TFMessage.h>
 
@@ -50,24 +47,22 @@ std::string read_all(const std::string& file) {
   return "";
 }
 
-ChildLimits limits_for(const std::string& file) {
+/// Reads the whole bag in a child process first. The bag library trusts every length in a file, reports no
+/// cause of an error, and may end the process for a corrupt file. Throws BagError. Returns the file's name.
+const std::string& readable(const std::string& file) {
   constexpr std::size_t kMemory = std::size_t{2} << 30, kOutput = 1 << 16;
   constexpr std::uintmax_t kSlowest = 10u << 20;  // bytes a second, compressed
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  return {30 + static_cast<int>(error ? 0 : size / kSlowest), kMemory, kOutput};
-}
-
-/// Reads the whole bag in a child process first. The bag library trusts every length in a file, reports no
-/// cause of an error, and may end the process for a corrupt file. Throws BagError.
-void check_readable(const std::string& file) {
   const std::string why = why_unreadable(file);
   if (!why.empty()) throw BagError(file + ": " + why + "; allowed: a bag that may be read");
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
   try {
-    run_in_child(limits_for(file), [&file] { return read_all(file); });
-  } catch (const std::runtime_error& error) {
-    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kWhole);
+    const ChildLimits limits{30 + static_cast<int>(error ? 0 : size / kSlowest), kMemory, kOutput};
+    run_in_child(limits, [&file] { return read_all(file); });
+  } catch (const std::runtime_error& problem) {
+    throw BagError(file + ": is corrupt: " + text::one_line(problem.what()) + kWhole);
   }
+  return file;
 }
 
 /// Call within a handler. Rethrows an exception of the bag library as a BagError that names the file, and any
@@ -84,23 +79,19 @@ void check_readable(const std::string& file) {
   }
 }
 
-std::set<std::string> known_types() {
+const std::set<std::string> kTypes = [] {
   std::set<std::string> types = TrackerReader::types();
   types.insert(kHandFrame);
   return types;
-}
-
+}();
 /// Topics of other trackers' hands, which are read together.
-std::set<std::string> known_point_topics() {
+const std::set<std::string> kPointTopics = [] {
   std::set<std::string> topics;
   for (const std::string& topic : TrackerReader::topics())
     topics.insert(topic[0] == '/' ? topic : "/" + topic);
   topics.erase(kLeapTopic);
   return topics;
-}
-
-const std::set<std::string> kTypes = known_types();
-const std::set<std::string> kPointTopics = known_point_topics();
+}();
 std::string joined(const std::set<std::string>& names) {
   return names.empty() ? "none" : text::joined({names.begin(), names.end()});
 }
@@ -138,11 +129,6 @@ SourceFrame refused(const std::string& reason, const std::string& detail) {
   frame.reason = reason;
   frame.detail = detail;
   return frame;
-}
-
-const std::string& readable(const std::string& file) {
-  check_readable(file);
-  return file;
 }
 
 const char* const kWorld = "world";
@@ -262,12 +248,6 @@ class BagInput : public FrameSource {
     return frame;
   }
 
-  SourceFrame read(const rosbag::MessageInstance& message) {
-    SourceFrame frame = read_hands(message);
-    frame.arrival = from_ros_time(message.getTime());
-    return frame;
-  }
-
   SourceFrame read_hands(const rosbag::MessageInstance& message) {
     try {
       return message.getDataType() == kHandFrame ? read_hand_frame(message) : read_tracker(message);
@@ -286,7 +266,8 @@ class BagInput : public FrameSource {
     constexpr std::size_t kMessages = 12;
     while (at_ != view_.end() && ahead_.size() < kMessages) {
       const std::string stream = at_->getCallerId() + " " + at_->getTopic();
-      SourceFrame frame = read(*at_);
+      SourceFrame frame = read_hands(*at_);
+      frame.arrival = from_ros_time(at_->getTime());
       ++at_;
       const auto first =
           std::find_if(ahead_.begin(), ahead_.end(), [&](const auto& one) { return one.first == stream; });
@@ -374,14 +355,12 @@ class BagLog : public LogSource {
   std::size_t position_ = 0;
 };
 
-struct Found {
-  std::string topic, why_not;
-};
-
-Found find_log(const std::string& file) {
+/// The topic of the log, or the reason why there is none.
+OpenLog find_log(const std::string& file) {
   using Traits = ros::message_traits::MD5Sum<SimulationInput>;
   const rosbag::Bag bag(file, rosbag::bagmode::Read);
-  Found found;
+  OpenLog found;
+  found.why_not = "it has no simulation_input";
   for (const rosbag::ConnectionInfo* connection : rosbag::View(bag).getConnections()) {
     if (connection->datatype != "mr_hand_interaction/SimulationInput") continue;
     if (connection->md5sum == Traits::value()) {
@@ -409,13 +388,9 @@ ReplayInput open_bag(const std::string& file, const std::optional<std::string>& 
 OpenLog open_log(const ReplayArguments& arguments) {
   const std::string& file = arguments.input;
   try {
-    check_readable(file);
-    const Found found = find_log(file);
-    OpenLog log;
-    log.why_not = found.why_not.empty() ? "it has no simulation_input" : found.why_not;
-    if (found.topic.empty()) return log;
-    log.topic = found.topic;
-    log.source = std::make_unique<BagLog>(file, found.topic);
+    OpenLog log = find_log(readable(file));
+    if (log.topic.empty()) return log;
+    log.source = std::make_unique<BagLog>(file, log.topic);
     if (log.source->size() == 0) log.source.reset();
     return log;
   } catch (...) {

@@ -15,17 +15,8 @@
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
-/// The frames of a recording in the order in which they were recorded.
-class FrameSource {
- public:
-  virtual ~FrameSource() = default;
-  /// Returns the next frame; empty at the end. Throws std::exception with one line if the rest cannot be
-  /// read.
-  virtual std::optional<SourceFrame> next() = 0;
-  /// Number of messages read so far, and in all. The hands of a frame may be in separate messages.
-  virtual std::size_t position() const = 0;
-  virtual std::size_t size() const = 0;
-};
+/// The frames of a recording.
+using FrameSource = Source<SourceFrame>;
 
 /// A recording in the CSV schema, seen by a device that is placed in world.
 class CsvInput : public FrameSource {

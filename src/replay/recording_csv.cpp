@@ -30,12 +30,7 @@ char separator_of(const std::string& header) {
 
 constexpr double kLongestRecording = 1e9;  // [s]
 
-struct FrameKey {
-  Nanoseconds stamp = 0;
-  double frame_id = 0.0;
-
-  bool operator==(const FrameKey& other) const { return stamp == other.stamp && frame_id == other.frame_id; }
-};
+using FrameKey = std::pair<Nanoseconds, double>;  // stamp, and frame_id
 
 FrameKey read_key(const CsvColumns& row) {
   const double time = row.required("time_s");
@@ -144,7 +139,7 @@ std::vector<JointsFrame> read_recording_csv(const std::string& file) try {
     if (line.empty() || line == "\r") continue;
     row.take(line, lines.number());
     const FrameKey next = read_key(row);
-    if (frames.empty() || !(next == key)) frames.push_back({next.stamp, {}});
+    if (frames.empty() || next != key) frames.push_back({next.first, {}});
     key = next;
     if (const auto id = read_id(row)) frames.back().hands.push_back(read_hand(row, *id));
   }

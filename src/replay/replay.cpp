@@ -44,11 +44,8 @@ class ScratchFolder {
 
 /// Throws UsageError.
 std::string scene_file(const ReplayArguments& arguments) {
-  try {
-    return find_scene_file(arguments.scene, scene_folders());
-  } catch (const SceneError& error) {
-    throw UsageError(std::string("--scene: ") + error.what());
-  }
+  return rethrown<UsageError, SceneError>("--scene: ",
+                                          [&] { return find_scene_file(arguments.scene, scene_folders()); });
 }
 
 /// Arguments of the command line that override what was recorded.
@@ -64,10 +61,7 @@ class Overrides {
     if (arguments_.parameter_file) {
       Configuration configuration;
       load_parameters(configuration, *arguments_.parameter_file);
-      for (const std::string& name : parameter_names()) {
-        const std::string text = parameter_text(configuration, name);
-        if (text != parameter_text(Configuration(), name)) take_parameter(name, text, world);
-      }
+      for (const auto& [name, text] : changed_parameters(configuration)) take_parameter(name, text, world);
     }
     for (const auto& [name, value] : arguments_.settings) take_parameter(name, value, world);
   }
@@ -81,7 +75,7 @@ class Overrides {
     }
     for (const auto& [name, twist] : arguments_.object_twists) {
       BodyState& body = body_of("--object-twist", name, simulation.scene(), state);
-      Body moving = simulation.scene().bodies[static_cast<std::size_t>(*find_body(simulation.scene(), name))];
+      Body moving = simulation.scene().bodies[*find_body(simulation.scene(), name)];
       moving.start = body.pose;
       moving.start_twist = twist;
       body = start_state(moving);
@@ -113,11 +107,7 @@ class Overrides {
 
   void take_parameter(const std::string& name, const std::string& value, World& world) {
     Configuration configuration;
-    try {
-      set_parameter(configuration, name, value);
-    } catch (const ParameterError& error) {
-      throw UsageError(error.what());
-    }
+    rethrown<UsageError, ParameterError>("", [&] { set_parameter(configuration, name, value); });
     const std::string text = parameter_text(configuration, name);
     std::string& recorded = world.parameters[name];
     if (recorded != text) differing_.push_back(name + "=" + text + " instead of " + recorded);
@@ -128,9 +118,9 @@ class Overrides {
   static BodyState& body_of(const char* option, const std::string& name, const Scene& scene,
                             SimulationState& state) {
     const auto body = find_body(scene, name);
-    if (!body || scene.bodies[static_cast<std::size_t>(*body)].fixed)
+    if (!body || scene.bodies[*body].fixed)
       throw UsageError(std::string(option) + ": no free object '" + name + "' as the recording begins");
-    return state.bodies[static_cast<std::size_t>(*body)];
+    return state.bodies[*body];
   }
 
   const ReplayArguments& arguments_;
@@ -292,21 +282,16 @@ class LogRun {
 Configuration configured(const ReplayArguments& arguments) {
   Configuration configuration;
   if (arguments.parameter_file) load_parameters(configuration, *arguments.parameter_file);
-  try {
+  rethrown<UsageError, ParameterError>("", [&] {
     for (const auto& [name, value] : arguments.settings) set_parameter(configuration, name, value);
     validate(configuration);
-  } catch (const ParameterError& error) {
-    throw UsageError(error.what());
-  }
+  });
   return configuration;
 }
 
 Body& object_of(Scene& scene, const std::string& option, const std::string& name) {
-  try {
-    return free_body(scene, name);
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(option + ": " + error.what());
-  }
+  return rethrown<UsageError, std::invalid_argument>(option + ": ",
+                                                     [&]() -> Body& { return free_body(scene, name); });
 }
 
 void place(Scene& scene, const std::string& name, const Pose& pose) {
@@ -317,13 +302,6 @@ void place(Scene& scene, const std::string& name, const Pose& pose) {
     throw UsageError("--object-pose " + name + ": is out of the scene's bounds");
   }
   body.start = pose;
-}
-
-void leave_out(const std::vector<std::string>& hands, ReplayRun& run) {
-  if (hands.empty()) return;
-  if (run.summary.hands_left_out == 0)
-    run.progress.line("replay: left out: " + hands.front() + " (more of the kind are counted only)");
-  run.summary.hands_left_out += hands.size();
 }
 
 /// Predicts the next stamp by the recorder's clock, as the node does for live frames.
@@ -400,7 +378,10 @@ void run_frames(FrameSource& source, Simulation& simulation, ReplayRun& run) {
     }
     const std::string which = "frame " + std::to_string(source.position()) + " of the input";
     if (!run.frame(*input->frame, clock.expected(input->arrival), which, simulation)) continue;
-    leave_out(input->left_out, run);
+    if (!input->left_out.empty() && run.summary.hands_left_out == 0)
+      run.progress.line("replay: left out: " + input->left_out.front() +
+                        " (more of the kind are counted only)");
+    run.summary.hands_left_out += input->left_out.size();
     clock = {simulation.result().stamp, input->arrival};
   }
 }

@@ -7,7 +7,6 @@
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 #include "../text/files.h"
@@ -85,6 +84,13 @@ Json lost(const ReplaySummary& summary) {
 
 }  // namespace
 
+std::map<std::string, std::string> changed_parameters(const Configuration& configuration) {
+  std::map<std::string, std::string> changed = parameter_texts(configuration);
+  for (const auto& [name, text] : parameter_texts(Configuration()))
+    if (changed.at(name) == text) changed.erase(name);
+  return changed;
+}
+
 ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic)
     : output_(arguments.output), made_(first_missing(arguments.output)) {
   summary.input = arguments.input;
@@ -105,10 +111,7 @@ void ReplayRun::begin(const Simulation& simulation, const std::string& scene) {
   summary.contact_model = configuration.contact_model.name;
   summary.version = MR_HAND_INTERACTION_VERSION;
   summary.gravity = gravity_of(simulation);
-  for (const std::string& name : parameter_names()) {
-    const std::string text = parameter_text(configuration, name);
-    if (text != parameter_text(Configuration(), name)) summary.parameters[name] = text;
-  }
+  for (const auto& [name, text] : changed_parameters(configuration)) summary.parameters[name] = text;
   for (const Body& body : simulation.scene().bodies) summary.materials[body.name] = body.material;
 }
 
@@ -174,10 +177,7 @@ void ReplayRun::end(const Simulation& simulation, const std::string& error) {
     if (is_held(i, simulation.state())) summary.held_at_end.push_back(scene.bodies[i].name);
   summary.state_hash = hash(simulation.state());
   summary.error = error;
-  const std::string path = output_ + "/summary.json";
-  std::ofstream file = file_to_write(path);
-  file << to_json(summary) << std::flush;
-  if (!file) throw std::runtime_error("cannot write " + path);
+  write_file(output_ + "/summary.json", to_json(summary));
 }
 
 double ReplayRun::seconds() const {

@@ -53,6 +53,9 @@ struct ReplaySummary {
   std::string error;                   ///< reason for an early end; empty if there was none
 };
 
+/// Parameters that differ from the default, as YAML.
+std::map<std::string, std::string> changed_parameters(const Configuration& configuration);
+
 /// The summary as JSON. Everything except step_time_us is the same for the same input.
 std::string to_json(const ReplaySummary& summary);
 

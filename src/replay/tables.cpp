@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -10,6 +9,7 @@
 #include "../scene/limits.h"
 #include "../simulation/contact_phase.h"
 #include "../text/files.h"
+#include "../text/text.h"
 #include "generated_tables.h"
 
 namespace mrhi {
@@ -80,9 +80,7 @@ Vector3 half_extents(const Body& body) {
 }  // namespace
 
 std::string Table::header() const {
-  std::string names;
-  for (const Column& column : columns) names += (names.empty() ? "" : ",") + column.name;
-  return names;
+  return text::joined(text::names_of(columns), ",");
 }
 
 const std::vector<Table>& tables() {
@@ -115,10 +113,7 @@ const char* event_name(EventKind kind) {
 
 ResultWriter::ResultWriter(const std::string& folder, const Scene& scene)
     : folder_(made_folder(folder)), scene_(&scene) {
-  const std::string path = folder + "/schema.json";
-  std::ofstream schema = file_to_write(path);
-  schema << schema_json() << std::flush;
-  if (!schema) throw std::runtime_error("cannot write " + path);
+  write_file(folder + "/schema.json", schema_json());
   for (const char* file : {kObjects, kContacts, kHands, kEvents, kFrames, kPalms, kBodies}) table(file);
   follow(scene);
 }
@@ -218,8 +213,8 @@ void ResultWriter::write_palm(double time, const Hand& hand, const SimulationSta
 void ResultWriter::write_hand(double time, const Hand& hand, const RenderedHand* rendered) {
   for (int i = 0; i < kCapsules; ++i) {
     if (!hand.has(i)) continue;
-    const Capsule& capsule = hand.capsules[static_cast<std::size_t>(i)];
-    const bool touching = rendered != nullptr && rendered->touching[static_cast<std::size_t>(i)];
+    const Capsule& capsule = hand.capsules[i];
+    const bool touching = rendered != nullptr && rendered->touching[i];
     table(kHands).row(time, hand.id, static_cast<int>(hand.side), finger_of(i), bone_of(i),
                       rendered != nullptr, capsule.start, capsule.end, capsule.radius, touching, frame_);
   }
