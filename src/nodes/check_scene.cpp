@@ -52,8 +52,7 @@ void print(const std::string& file, const Scene& scene) {
   }
   for (const Joint& joint : scene.joints)
     std::printf("  joint %-18s %s '%s', %s to %s %s\n", joint.name.c_str(),
-                joint.kind == JointKind::turning ? "turns" : "slides",
-                scene.bodies[static_cast<std::size_t>(joint.child)].name.c_str(),
+                joint.kind == JointKind::turning ? "turns" : "slides", scene.bodies[joint.child].name.c_str(),
                 text::number(joint.lower).c_str(), text::number(joint.upper).c_str(),
                 joint.kind == JointKind::turning ? "rad" : "m");
   for (const std::string& warning : scene.warnings) std::printf("  warning: %s\n", warning.c_str());
@@ -103,7 +102,7 @@ class Picture {
       Facet facet{{}, 0.0, 0.0};
       std::array<Vector3, 3> corners;
       for (std::size_t k = 0; k < 3; ++k) {
-        corners[k] = view * mesh.vertices[static_cast<std::size_t>(t[k])];
+        corners[k] = view * mesh.vertices[t[k]];
         facet.corners[k] = corners[k].head<2>();
         facet.depth += corners[k].z() / 3.0;
         seen_.extend(facet.corners[k]);
@@ -136,10 +135,7 @@ int check(const std::vector<std::string>& words) {
     try {
       const Scene scene = load_scene(find_scene_file(file, scene_folders()), scene_options(configuration));
       print(file, scene);
-      if (picture.empty()) continue;
-      std::ofstream out = file_to_write(picture);
-      out << Picture(scene).svg() << std::flush;
-      if (!out) throw std::runtime_error("cannot write '" + picture + "'");
+      if (!picture.empty()) write_file(picture, Picture(scene).svg());
     } catch (const std::exception& error) {
       std::cerr << "check_scene: " << error.what() << std::endl;
       status = 1;

@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "../text/command_line.h"
+#include "../text/text.h"
 #include "../training/operator_trial.h"
 #include "exit_status.h"
 #include "mr_hand_interaction/parameters.h"
@@ -76,13 +77,11 @@ Study read_arguments(const std::vector<std::string>& arguments) {
 
 Configuration configuration_of(const Study& study, const std::string& model) {
   Configuration configuration;
-  try {
+  rethrown<UsageError, ParameterError>("", [&] {
     for (const auto& [key, value] : study.settings) set_parameter(configuration, key, value);
     set_parameter(configuration, "contact_model", model);
     validate(configuration);
-  } catch (const ParameterError& error) {
-    throw UsageError(error.what());
-  }
+  });
   return configuration;
 }
 

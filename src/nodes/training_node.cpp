@@ -168,8 +168,7 @@ class TrainingServer {
       return false;
     if (seen.joints.size() != model.scene.joints.size()) return false;
     return std::all_of(seen.joints.begin(), seen.joints.end(), [&](const auto& joint) {
-      const double start =
-          model.scene.joints[static_cast<std::size_t>(*find_joint(model.scene, joint.first))].start;
+      const double start = model.scene.joints[*find_joint(model.scene, joint.first)].start;
       return std::abs(joint.second - start) < kStartRoom;
     });
   }
@@ -179,8 +178,7 @@ class TrainingServer {
     const ObjectModel& model = scene_.model(session_.object().name);
     const Goal& goal = session_.task().goals[session_.trial().goal()];
     if (goal.kind != GoalKind::joint) return model.scene.bodies[model.body];
-    const auto joint = static_cast<std::size_t>(*find_joint(model.scene, goal.joint));
-    return model.scene.bodies[static_cast<std::size_t>(model.scene.joints[joint].child)];
+    return model.scene.bodies[model.scene.joints[*find_joint(model.scene, goal.joint)].child];
   }
 
   void take_event(const mr_hand_interaction::InteractionEvent& event) {

@@ -1,5 +1,3 @@
-#include <visualization_msgs/Marker.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -50,9 +50,8 @@ void add_phalanx(const mr_hand_interaction::Hand& message, const mr_hand_interac
   const int index = capsule_index(phalanx.finger, phalanx.bone);
   if (hand.has(index)) refuse(message, name + " is given twice");
   const double radius = checked(message, "radius", phalanx.radius, 0.1);
-  hand.capsules[static_cast<std::size_t>(index)] = {checked(message, "start of a phalanx", phalanx.start),
-                                                    checked(message, "end of a phalanx", phalanx.end),
-                                                    radius};
+  hand.capsules[index] = {checked(message, "start of a phalanx", phalanx.start),
+                          checked(message, "end of a phalanx", phalanx.end), radius};
 }
 
 Hand from_message(const mr_hand_interaction::Hand& message) {
@@ -93,14 +92,14 @@ mr_hand_interaction::Hand to_message(const Hand& hand, const Touching& touching)
   message.phalanges.reserve(kPhalanges);
   for (int i = 0; i < kPhalanges; ++i) {
     if (!hand.has(i)) continue;
-    const Capsule& capsule = hand.capsules[static_cast<std::size_t>(i)];
+    const Capsule& capsule = hand.capsules[i];
     mr_hand_interaction::Phalanx& phalanx = message.phalanges.emplace_back();
     phalanx.finger = static_cast<std::uint8_t>(finger_of(i));
     phalanx.bone = static_cast<std::uint8_t>(bone_of(i));
     phalanx.start = to_message(capsule.start);
     phalanx.end = to_message(capsule.end);
     phalanx.radius = static_cast<float>(capsule.radius);
-    phalanx.touching = touching[static_cast<std::size_t>(i)];
+    phalanx.touching = touching[i];
   }
   return message;
 }

@@ -1,7 +1,4 @@
-#include <visualization_msgs/Marker.h>
-
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "../math/rotation.h"
@@ -90,8 +87,7 @@ void HandMarkers::add_skin(const RenderedHand& rendered, int id, const MarkerLay
   std::size_t i = 0;
   for (const auto& triangle : skin_.triangles()) {
     for (const std::size_t corner : {0, 1, 2}) {
-      const auto v =
-          static_cast<std::size_t>(triangle[rendered.hand.side == Side::left ? 2 - corner : corner]);
+      const int v = triangle[rendered.hand.side == Side::left ? 2 - corner : corner];
       marker.points[i] = to_message(surface_.vertices[v]);
       marker.colors[i++] = color_message(colours_[v], 1.0f);
     }
@@ -128,10 +124,10 @@ void HandMarkers::add_ghost(const Hand& rendered, const Hand& tracked, const Pic
   marker.points.clear();
   marker.colors.clear();
   for (const auto& triangle : outline_.triangles()) {
-    const auto alpha = [&](std::size_t i) { return alphas_[static_cast<std::size_t>(triangle[i])]; };
+    const auto alpha = [&](std::size_t i) { return alphas_[triangle[i]]; };
     if (alpha(0) + alpha(1) + alpha(2) <= 0.0f) continue;
     for (const std::size_t corner : {0, 1, 2}) {
-      const auto v = static_cast<std::size_t>(triangle[tracked.side == Side::left ? 2 - corner : corner]);
+      const int v = triangle[tracked.side == Side::left ? 2 - corner : corner];
       marker.points.push_back(to_message(ghost_.vertices[v]));
       marker.colors.push_back(color_message(ghost_colour(ghost_.normals[v], style), alphas_[v]));
     }
@@ -158,8 +154,7 @@ void add_bone(const Capsule& bone, bool with_start, const HandStyle& style, cons
 
 bool follows_another(const Hand& hand, int index) {
   if (bone_of(index) == 0 || !hand.has(index - 1)) return false;
-  const auto i = static_cast<std::size_t>(index);
-  return (hand.capsules[i].start - hand.capsules[i - 1].end).norm() < 1e-6;
+  return (hand.capsules[index].start - hand.capsules[index - 1].end).norm() < 1e-6;
 }
 
 }  // namespace
@@ -168,9 +163,8 @@ void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& s
                   const MarkerLayer& layer) {
   for (int i = 0; i < kCapsules; ++i) {
     if (!hand.has(i)) continue;
-    const auto index = static_cast<std::size_t>(i);
-    add_bone(hand.capsules[index], !follows_another(hand, i), style,
-             touching[index] ? style.touching : style.skin, first_id + 3 * i, layer);
+    add_bone(hand.capsules[i], !follows_another(hand, i), style, touching[i] ? style.touching : style.skin,
+             first_id + 3 * i, layer);
   }
 }
 

@@ -2,8 +2,6 @@
 
 #include <mr_hand_interaction/SimulationInput.h>
 #include <ros/ros.h>
-#include <ros/time.h>
-#include <boost/make_shared.hpp>
 
 #include <algorithm>
 #include <string>

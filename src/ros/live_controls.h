@@ -4,7 +4,6 @@
 #include <interactive_markers/interactive_marker_server.h>
 #include <mr_hand_interaction/TuneConfig.h>
 #include <ros/callback_queue.h>
-#include <ros/callback_queue_interface.h>
 #include <ros/ros.h>
 #include <visualization_msgs/InteractiveMarker.h>
 #include <boost/make_shared.hpp>
@@ -383,17 +382,14 @@ class Tuning {
     }
     const Vector3 gravity(requested.gravity_x, requested.gravity_y, requested.gravity_z);
     const bool pulls_elsewhere = gravity != Vector3(shown_.gravity_x, shown_.gravity_y, shown_.gravity_z);
-    const std::vector<NumberOrWord> others{
-        {"gravity", "scene",
-         "[" + text::exact(gravity.x()) + ", " + text::exact(gravity.y()) + ", " + text::exact(gravity.z()) +
-             "]",
-         pulls_elsewhere, requested.gravity_of_scene, shown_.gravity_of_scene},
-        {kStiffness, "model", text::exact(requested.material_stiffness),
-         requested.material_stiffness != shown_.material_stiffness, requested.stiffness_of_model,
-         shown_.stiffness_of_model},
-        {kNoise, "estimated", text::exact(requested.filter_noise),
-         requested.filter_noise != shown_.filter_noise, requested.filter_noise_estimated,
-         shown_.filter_noise_estimated}};
+    const std::vector<NumberOrWord> others{{"gravity", "scene", text::exact(gravity), pulls_elsewhere,
+                                            requested.gravity_of_scene, shown_.gravity_of_scene},
+                                           {kStiffness, "model", text::exact(requested.material_stiffness),
+                                            requested.material_stiffness != shown_.material_stiffness,
+                                            requested.stiffness_of_model, shown_.stiffness_of_model},
+                                           {kNoise, "estimated", text::exact(requested.filter_noise),
+                                            requested.filter_noise != shown_.filter_noise,
+                                            requested.filter_noise_estimated, shown_.filter_noise_estimated}};
     for (const NumberOrWord& other : others) other.add_to(values);
     return values;
   }

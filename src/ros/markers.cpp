@@ -1,7 +1,5 @@
 #include "mr_hand_interaction/ros/markers.h"
 
-#include <visualization_msgs/Marker.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -65,11 +63,6 @@ bool has_materials(const std::string& mesh) {
 // stays almost opaque.
 constexpr double kUnseen = 0.006, kDeep = 0.025;
 constexpr double kMinOpacity = 0.6;
-
-double opacity_around(double depth) {
-  const double seen = std::clamp((depth - kUnseen) / (kDeep - kUnseen), 0.0, 1.0);
-  return 1.0 - (1.0 - kMinOpacity) * seen;
-}
 
 /// A mesh stays opaque: viewers do not sort its triangles, so that a translucent one would show some of its
 /// far side.
@@ -226,9 +219,10 @@ class BodyMarkers {
     now_.resize(scene_.bodies.size());
     for (std::size_t i = 0; i < now_.size(); ++i) now_[i] = {state.bodies[i].pose, 1.0};
     for (const Contact& contact : contacts) {
+      if (!may_be_translucent(scene_.bodies[contact.key.body])) continue;
+      const double seen = std::clamp((contact.depth - kUnseen) / (kDeep - kUnseen), 0.0, 1.0);
       double& opacity = now_[contact.key.body].opacity;
-      if (may_be_translucent(scene_.bodies[contact.key.body]))
-        opacity = std::min(opacity, opacity_around(contact.depth));
+      opacity = std::min(opacity, 1.0 - (1.0 - kMinOpacity) * seen);
     }
     all = all || added_.size() != now_.size();
     int object_id = 0, fixture_id = 0;

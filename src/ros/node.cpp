@@ -1,9 +1,5 @@
 #include "node.h"
 
-#include <ros/console.h>
-#include <ros/init.h>
-#include <ros/master.h>
-#include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <chrono>

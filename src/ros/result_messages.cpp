@@ -7,6 +7,7 @@
 #include "../math/rotation.h"
 #include "../scene/shape_kinds.h"
 #include "../simulation/contact_phase.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
@@ -84,18 +85,14 @@ geometry_msgs::Pose joint_message(const Vector3& position, const Vector3& along)
   return to_message(Pose{position, rotation_between(Vector3::UnitX(), along)});
 }
 
-geometry_msgs::Pose missing_joint() {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  return to_message(Pose{Vector3::Constant(nan), Quaternion::Identity()});
-}
-
 void add_finger(const Hand& hand, int finger, geometry_msgs::PoseArray& message) {
   for (int joint = 0; joint < kBonesPerFinger; ++joint) {
     const int bone = capsule_index(finger, std::max(joint, 1));
-    const Capsule& capsule = hand.capsules[static_cast<std::size_t>(bone)];
+    const Capsule& capsule = hand.capsules[bone];
     message.poses.push_back(
         hand.has(bone) ? joint_message(joint == 0 ? capsule.start : capsule.end, capsule.end - capsule.start)
-                       : missing_joint());
+                       : to_message(Pose{Vector3::Constant(std::numeric_limits<double>::quiet_NaN()),
+                                         Quaternion::Identity()}));
   }
 }
 
@@ -211,7 +208,7 @@ mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const Fr
   message.header = header;
   message.kind = static_cast<std::uint8_t>(event.kind);
   if (event.body >= 0) {
-    const auto body = static_cast<std::size_t>(event.body);
+    const std::size_t body = event.body;
     message.object = scene.bodies[body].name;
     message.assisted = assist_force(body, result).has_value();
   }
@@ -316,11 +313,10 @@ geometry_msgs::Wrench wrench_message(std::size_t body, const FrameResult& result
 }
 
 std::string held_objects(const Scene& scene, const SimulationState& state) {
-  std::string names;
+  std::vector<std::string> names;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    if (!scene.bodies[i].fixed && is_held(i, state))
-      names += (names.empty() ? "" : ",") + scene.bodies[i].name;
-  return names;
+    if (!scene.bodies[i].fixed && is_held(i, state)) names.push_back(scene.bodies[i].name);
+  return text::joined(names, ",");
 }
 
 ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& message) {

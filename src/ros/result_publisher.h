@@ -3,7 +3,6 @@
 #include <geometry_msgs/Point.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/message_traits.h>
 #include <ros/ros.h>
 #include <std_msgs/ColorRGBA.h>
 #include <std_msgs/String.h>
@@ -147,17 +146,13 @@ class StandardOutputs {
  private:
   static constexpr int kQueue = 10;
 
-  static std::string topic_of(std::string name) {
-    std::replace(name.begin(), name.end(), '-', '_');
-    return "objects/" + name;
-  }
-
   struct ObjectTopics {
     std::string name;  // without /pose and /wrench
     ros::Publisher pose, wrench;
   };
   ObjectTopics new_topics(const std::string& body, const std::map<std::string, ObjectTopics>& there) {
-    std::string name = topic_of(body);
+    std::string name = "objects/" + body;
+    std::replace(name.begin(), name.end(), '-', '_');
     const auto is_taken = [&name](const auto& other) { return other.second.name == name; };
     while (std::any_of(there.begin(), there.end(), is_taken)) name += '_';
     return {name, node_.advertise<geometry_msgs::PoseStamped>(name + "/pose", kQueue),

@@ -126,7 +126,7 @@ class SceneView {
     for (const auto& object : objects) {
       const auto index = find_body(scene_, object.name);
       if (!index) continue;
-      const auto i = static_cast<std::size_t>(*index);
+      const std::size_t i = *index;
       state_.bodies[i].pose = from_message(object.pose);
       // Bodies of this scene have unit mass and inertia by default.
       state_.bodies[i].linear_momentum = from_message(object.twist.linear);
@@ -157,7 +157,7 @@ class SceneView {
       contact.force = from_message(message.force);
       contact.friction =
           message.phase == mr_hand_interaction::Contact::SLIPPING ? Friction::slipping : Friction::sticking;
-      contact.radius = result_.rendered[hand].hand.capsules[static_cast<std::size_t>(capsule)].radius;
+      contact.radius = result_.rendered[hand].hand.capsules[capsule].radius;
       result_.contacts.push_back(contact);
     }
   }

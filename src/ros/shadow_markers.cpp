@@ -1,7 +1,5 @@
 #include "marker_layers.h"
 
-#include <visualization_msgs/Marker.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -103,7 +101,7 @@ std::vector<Outline> outlines_of(const Hand& hand) {
   std::vector<Outline> outlines;
   for (int i = 0; i < kCapsules; ++i) {
     if (!hand.has(i)) continue;
-    const Capsule& capsule = hand.capsules[static_cast<std::size_t>(i)];
+    const Capsule& capsule = hand.capsules[i];
     outlines.emplace_back([&](const Vector3& n) -> Vector3 {
       return (n.dot(capsule.start) > n.dot(capsule.end) ? capsule.start : capsule.end) + capsule.radius * n;
     });
@@ -159,7 +157,7 @@ class Shadow {
       const Point place = begin + kCell * Point(column + right, row + up);
       const std::vector<double>& values = up ? above : below;
       marker.points.push_back(to_message(Vector3(place.x(), place.y(), ground_ + kLift)));
-      marker.colors.push_back(color(0.0, 0.0, 0.0, values[i + static_cast<std::size_t>(right)]));
+      marker.colors.push_back(color(0.0, 0.0, 0.0, values[i + right]));
     };
     add_corner(0, 0), add_corner(1, 0), add_corner(1, 1);
     add_corner(0, 0), add_corner(1, 1), add_corner(0, 1);
@@ -170,32 +168,25 @@ class Shadow {
   int columns_ = 0;
 };
 
-bool is_under_all(double height, const Scene& scene) {
-  return std::none_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& body) {
-    return !body.fixed && !body.shapes.empty() && body.start.position.z() < height;
-  });
-}
-
-bool is_level(const Pose& pose) {
-  return std::abs((pose.orientation * Vector3::UnitZ()).z()) > 1.0 - 1e-6;
-}
-
 }  // namespace
 
 double ground_height(const Scene& scene) {
-  double lowest = kGrid + kClearance;
-  for (const Body& body : scene.bodies)
-    if (!body.fixed && !body.shapes.empty())
-      lowest = std::min(lowest, body.start.position.z() - body.bounding_radius);
+  double lowest = kGrid + kClearance, lowest_centre = std::numeric_limits<double>::infinity();
+  for (const Body& body : scene.bodies) {
+    if (body.fixed || body.shapes.empty()) continue;
+    lowest = std::min(lowest, body.start.position.z() - body.bounding_radius);
+    lowest_centre = std::min(lowest_centre, body.start.position.z());
+  }
   double ground = lowest - kClearance;
   for (const Body& body : scene.bodies) {
     for (const PlacedShape& placed : body.shapes) {
       const Pose pose = body.start * placed.pose;
+      const bool level = std::abs((pose.orientation * Vector3::UnitZ()).z()) > 1.0 - 1e-6;
       const Box* const box = std::get_if<Box>(&placed.shape);
-      if (!body.fixed || !box || !is_level(pose)) continue;
+      if (!body.fixed || !box || !level) continue;
       const double top = pose.position.z() + box->half_extents.z();
       const bool wide = std::min(box->half_extents.x(), box->half_extents.y()) >= kWide;
-      if (wide && is_under_all(top, scene)) ground = std::max(ground, top);
+      if (wide && top <= lowest_centre) ground = std::max(ground, top);
     }
   }
   return ground;
@@ -233,7 +224,7 @@ void ShadowMarkers::add(const SimulationState& state, const FrameResult& result,
     cast = gone ? casts_.erase(cast) : std::next(cast);
   }
   for (int i = 0; i < hands; ++i) {
-    const Hand& hand = result.rendered[static_cast<std::size_t>(i)].hand;
+    const Hand& hand = result.rendered[i].hand;
     std::vector<Vector3> from;
     for (const Capsule& capsule : hand.capsules) from.insert(from.end(), {capsule.start, capsule.end});
     add_one(

@@ -27,18 +27,6 @@ geometry_msgs::TransformStamped without_slashes(geometry_msgs::TransformStamped 
   return transform;
 }
 
-bool has_size(std::size_t joints) {
-  const auto& orders = joint_orders();
-  return std::any_of(orders.begin(), orders.end(),
-                     [=](const JointOrder& order) { return order.size == joints; });
-}
-
-const JointOrder& usual_order(std::size_t joints, const Vector3*) {
-  const auto& orders = joint_orders();
-  return *std::find_if(orders.begin(), orders.end(),
-                       [=](const JointOrder& order) { return order.size == joints; });
-}
-
 void add_hand(const TrackedPoints& tracked, std::size_t first, std::size_t joints, Side side,
               const OrderOf& order_of, JointsFrame& frame) {
   const Vector3* const points = tracked.points.data() + first;
@@ -53,11 +41,6 @@ bool ends_with(const std::string& name, const std::string& end) {
   return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Topics of one hand or both, of the left hand, of the right.
-std::vector<std::string> hands_topics(const std::string& end) {
-  return {"hands/" + end, "hands/left/" + end, "hands/right/" + end};
-}
-
 /// A message type with which trackers report hands.
 struct Tracker {
   std::string type;
@@ -70,10 +53,10 @@ struct Tracker {
 };
 
 template <template <class> class Message>
-Tracker tracker_of_points(const std::string& type, const std::string& topics) {
+Tracker tracker_of_points(const std::string& type, const std::string& topic) {
   return {type,
           {ros::message_traits::md5sum<Message<std::allocator<void>>>()},
-          hands_topics(topics),
+          {"hands/" + topic, "hands/left/" + topic, "hands/right/" + topic},
           [type](const std::string&, std::vector<std::uint8_t>& bytes) {
             return tracked_points(deserialised<Message<Bounded>>(type.c_str(), bytes));
           }};
@@ -165,7 +148,7 @@ Pose TransformMemory::pose(const std::string& fixed, const std::string& frame, N
 
 bool has_both_hands(const TrackedPoints& tracked) {
   const std::size_t joints = tracked.points.size();
-  return joints % 2 == 0 && !has_size(joints) && has_size(joints / 2);
+  return joints % 2 == 0 && !usual_order(joints) && usual_order(joints / 2);
 }
 
 std::optional<Side> side_of_topic(const std::string& name) {
@@ -188,9 +171,10 @@ JointsFrame joints_from_points(const TrackedPoints& tracked, Side side, const Or
   JointsFrame frame;
   frame.stamp = from_ros_time(tracked.header.stamp);
   const std::size_t joints = tracked.points.size();
-  const OrderOf& order = order_of ? order_of : OrderOf(usual_order);
+  const auto usual = [](std::size_t size, const Vector3*) -> const JointOrder& { return *usual_order(size); };
+  const OrderOf order = order_of ? order_of : usual;
   if (joints == 0) return frame;
-  if (has_size(joints)) {
+  if (usual_order(joints)) {
     add_hand(tracked, 0, joints, side, order, frame);
   } else if (has_both_hands(tracked)) {
     add_hand(tracked, 0, joints / 2, Side::left, order, frame);

@@ -1,5 +1,3 @@
-#include <visualization_msgs/Marker.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -88,11 +86,6 @@ void add_goal(const Session& session, const Body& body, const Status& status, co
   add_target({body, pose_at(goal, session), status.progress, status.inside != 0}, 0, layer);
 }
 
-/// In front of its ring, towards the viewer.
-Vector3 mark_place(const Goal& goal, const Body& body) {
-  return goal.position - kMarkRoom * ring_radius(body) * Vector3::UnitY();
-}
-
 void add_places(const Session& session, const Body& body, const MarkerLayer& places,
                 const MarkerLayer& path) {
   const Task& task = session.task();
@@ -105,7 +98,8 @@ void add_places(const Session& session, const Body& body, const MarkerLayer& pla
     route.push_back(goal.position);
     const int id = static_cast<int>(i) * kIdsPerPlace;
     const bool done = begun && session.trial().goal() > i, waits = !begun || session.trial().goal() < i;
-    write(places, id, mark_place(goal, body), done ? "done" : std::to_string(number), kMark);
+    const Vector3 in_front = goal.position - kMarkRoom * ring_radius(body) * Vector3::UnitY();
+    write(places, id, in_front, done ? "done" : std::to_string(number), kMark);
     if (waits) add_target({body, pose_at(goal, session), 0.0, false, true}, id + 1, places);
   }
   if (route.size() < 2) return;
@@ -190,10 +184,6 @@ constexpr double kShell = 1.12;      // size of a highlight, over the body's
 constexpr double kShaft = 0.035;     // of the arrow that points at the object [m]
 constexpr double kGap = 0.012;       // between arrow and object [m]
 
-Pose level_at(const Vector3& place) {
-  return {place, Quaternion::Identity()};
-}
-
 std_msgs::ColorRGBA to_take(double alpha) {
   return color(0.941, 0.894, 0.259, alpha);
 }
@@ -223,9 +213,9 @@ void add_target(const TargetMark& target, int first_id, const MarkerLayer& layer
   Marker& ring = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(1.0, 1.0, 1.0));
   const double inner = ring_radius(target.body), outer = (1.0 + kRingWidth) * inner;
   const double progress = std::min(1.0, std::max(0.0, target.progress));
-  add_ring({inner, outer, 0.0, progress}, level_at(target.pose.position), ring);
+  add_ring({inner, outer, 0.0, progress}, upright(target.pose.position), ring);
   ring.colors.resize(ring.points.size(), paint(filled));
-  add_ring({inner, outer, progress, 1.0}, level_at(target.pose.position), ring);
+  add_ring({inner, outer, progress, 1.0}, upright(target.pose.position), ring);
   ring.colors.resize(ring.points.size(), color(0.9, 0.9, 0.9, 0.3 * filled));
 }
 

@@ -8,7 +8,6 @@
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
-#include <visualization_msgs/MarkerArray.h>
 
 #include <chrono>
 #include <cstdio>
@@ -68,8 +67,20 @@ struct TrainingParameters {
   /// operator cannot perform, SessionError for an unusable folder.
   Session open_session(const ros::NodeHandle& node, Nanoseconds now,
                        const std::function<void(const EventRow&)>& on_event) const {
-    return Session(checked_task(), started_header(), place(), folder, now, setup_of(node),
-                   {[] { return utc_now(true); }, on_event});
+    const std::string file = find_task_file(task, task_folders());
+    const Task loaded = load_task(file);
+    OperatorStage stage;
+    stage.scene_folders = scene_folders();
+    if (by_operator) check_operator(loaded, stage);
+    const Configuration configuration = configuration_of(node);
+    const SessionSetup setup = session_setup(file, loaded, configuration, scene_folders(),
+                                             scene_options(configuration), MR_HAND_INTERACTION_VERSION);
+    SessionHeader started = header;
+    started.started = utc_now(false);
+    started.software = MR_HAND_INTERACTION_VERSION;
+    const std::uint64_t place =
+        number ? static_cast<std::uint64_t>(*number - 1) : participant_place(header.participant);
+    return Session(loaded, started, place, folder, now, setup, {[] { return utc_now(true); }, on_event});
   }
 
   std::string task = "pick_and_place";  ///< ~task: name or YAML file
@@ -82,14 +93,6 @@ struct TrainingParameters {
   bool by_operator = false;  ///< ~operator: a simulated operator performs the task, which is checked
 
  private:
-  Task checked_task() const {
-    Task loaded = load_task(find_task_file(task, task_folders()));
-    OperatorStage stage;
-    stage.scene_folders = scene_folders();
-    if (by_operator) check_operator(loaded, stage);
-    return loaded;
-  }
-
   /// With or without milliseconds.
   static std::string utc_now(bool with_milliseconds) {
     const auto since = std::chrono::system_clock::now().time_since_epoch();
@@ -101,27 +104,8 @@ struct TrainingParameters {
     return std::string(whole) + part + "Z";
   }
 
-  SessionHeader started_header() const {
-    SessionHeader now = header;
-    now.started = utc_now(false);
-    now.software = MR_HAND_INTERACTION_VERSION;
-    return now;
-  }
-
   Configuration configuration_of(const ros::NodeHandle& node) const {
     return read_server_parameters(ros::NodeHandle(node, simulation)).configuration;
-  }
-
-  SessionSetup setup_of(const ros::NodeHandle& node) const {
-    const std::string file = find_task_file(task, task_folders());
-    const Configuration configuration = configuration_of(node);
-    return session_setup(file, load_task(file), configuration, scene_folders(), scene_options(configuration),
-                         MR_HAND_INTERACTION_VERSION);
-  }
-
-  std::uint64_t place() const {
-    if (number) return static_cast<std::uint64_t>(*number - 1);
-    return participant_place(header.participant);
   }
 };
 
@@ -242,15 +226,18 @@ class ParameterWatch {
   /// `configuration`: expected values. Ignores the gravity of a BEGIN, which a session sets after it has
   /// begun to listen.
   explicit ParameterWatch(const Configuration& configuration)
-      : begun_(texts_of(configuration)), now_(configuration) {}
+      : begun_(parameter_texts(configuration)), now_(configuration) {}
 
   /// Returns the differences that this message causes.
   std::vector<Difference> take(const mr_hand_interaction::SimulationInput& message) {
-    if (!may_set(message)) return {};
+    const bool may_set =
+        message.kind == SimulationInput::BEGIN ||
+        (message.kind == SimulationInput::CHANGE && message.text.find("set") != std::string::npos);
+    if (!may_set) return {};
     const Configuration later = after(message, now_);
     std::vector<Difference> differences;
-    const Texts before = texts_of(now_);
-    for (const auto& [name, value] : texts_of(later)) {
+    const auto before = parameter_texts(now_);
+    for (const auto& [name, value] : parameter_texts(later)) {
       if (value != before.at(name)) differences.push_back({name, value, value == begun_.at(name)});
     }
     now_ = later;
@@ -259,12 +246,6 @@ class ParameterWatch {
 
  private:
   using SimulationInput = mr_hand_interaction::SimulationInput;
-
-  static std::map<std::string, std::string> texts_of(const Configuration& configuration) {
-    std::map<std::string, std::string> texts;
-    for (const std::string& name : parameter_names()) texts[name] = parameter_text(configuration, name);
-    return texts;
-  }
 
   static RecordedFiles files_of(const SimulationInput& message) {
     RecordedFiles files;
@@ -290,13 +271,7 @@ class ParameterWatch {
     return configuration;
   }
 
-  static bool may_set(const SimulationInput& message) {
-    if (message.kind == SimulationInput::BEGIN) return true;
-    return message.kind == SimulationInput::CHANGE && message.text.find("set") != std::string::npos;
-  }
-
-  using Texts = std::map<std::string, std::string>;
-  const Texts begun_;
+  const std::map<std::string, std::string> begun_;
   Configuration now_;
 };
 
