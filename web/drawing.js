@@ -3,11 +3,11 @@
 import * as THREE from './three/build/three.module.js';
 
 const LENGTH = 1e-4, DIRECTION = 1e-3, FORCE = 1e-2; // value of one unit of an integer [m], [1], [N]
-const SKIN = new THREE.Color(0.90, 0.69, 0.57), TOUCHING = new THREE.Color(0.82, 0.25, 0.18);
+const SKIN = new THREE.Color(0.91, 0.73, 0.62), TOUCHING = new THREE.Color(0.86, 0.30, 0.08);
 const STICKS = 0x009e73, SLIPS = 0xf0e442, STRUCK = 0xffffff; // colour by phase of a contact (Okabe & Ito)
 const PHASES = [STRUCK, STICKS, SLIPS];
 const LONGEST = 0.12, HALF = 3; // maximum length of an arrow [m], and the force with half of it [N]
-const SHORTEST = 0.004, DOT = 0.0025, RING = 0.006; // [m]
+const SHORTEST = 0.004, RING = 0.0105; // [m]; the ring is seen around a finger
 const LETTERS = 0.009; // height [m]
 
 function bytes(text) {
@@ -26,8 +26,8 @@ function length([x, y, z]) {
 }
 
 function material([r, g, b, a], options = {}) {
-  return new THREE.MeshStandardMaterial({color: new THREE.Color(r, g, b), roughness: 0.7, transparent: a < 1, opacity: a,
-    depthWrite: a >= 1, ...options});
+  return new THREE.MeshStandardMaterial({color: new THREE.Color(r, g, b), roughness: 0.7, metalness: 0, transparent: a < 1,
+    opacity: a, depthWrite: a >= 1, ...options});
 }
 
 // Text that faces the eye. It is drawn again only when it changes.
@@ -136,7 +136,7 @@ function clear(group) {
 // One mesh of moving capsules and the slabs between them. Each vertex has its end of the unit capsule and its direction.
 class Capsules extends THREE.Mesh {
   constructor(count, slabs) {
-    const around = 10, rows = 8, corners = [], indices = [];
+    const around = 16, rows = 8, corners = [], indices = [];
     for (let row = 0; row < rows; ++row) {
       const far = row >= rows / 2, up = Math.PI * ((far ? row - 1 : row) / (rows - 2) - 0.5);
       for (let i = 0; i < around; ++i) {
@@ -184,7 +184,8 @@ class Capsules extends THREE.Mesh {
     }
   }
 
-  add(start, end, radius, color) {
+  // color: at its end; before: at its start.
+  add(start, end, radius, color, before = color) {
     if (this.used === this.count) return;
     const z = end.clone().sub(start), {position, normal, color: paint} = this.geometry.attributes;
     if (z.lengthSq() === 0) z.set(0, 0, 1);
@@ -199,7 +200,8 @@ class Capsules extends THREE.Mesh {
       normal.setXYZ(at, out.x, out.y, out.z);
       out.multiplyScalar(radius).add(far ? end : start);
       position.setXYZ(at, out.x, out.y, out.z);
-      paint.setXYZ(at++, color.r, color.g, color.b);
+      const {r, g, b: blue} = far ? color : before;
+      paint.setXYZ(at++, r, g, blue);
     }
   }
 
@@ -218,10 +220,13 @@ const WEB = 0.6; // fraction of the index finger's metacarpal at which the thumb
 // Phalanges as capsules, and the palm between the metacarpals of adjacent fingers, with round ends.
 function addHand(capsules, [, , , , phalanges]) {
   const metacarpals = [];
+  let before = SKIN; // at the end of the last phalanx
   for (const [which, ...rest] of phalanges) {
     const start = length(rest.slice(0, 3)), end = length(rest.slice(3, 6)), radius = LENGTH * rest[6];
     if (which % 4 === 0 || which === THUMB) metacarpals[Math.floor(which / 4)] = {start, end, radius};
-    capsules.add(start, end, radius, rest[7] ? TOUCHING : SKIN);
+    const color = rest[7] ? TOUCHING : SKIN;
+    capsules.add(start, end, radius, color, which % 4 === 0 ? SKIN : before);
+    before = color;
   }
   for (let finger = 0; finger + 1 < metacarpals.length; ++finger) {
     const a = metacarpals[finger], next = metacarpals[finger + 1];
@@ -232,20 +237,18 @@ function addHand(capsules, [, , , , phalanges]) {
   }
 }
 
-// A contact of a hand and an object: a dot, a ring on the surface, an arrow for the force, and its value.
+// A contact of a hand and an object: a ring on the surface, an arrow for the force, and its value.
 class ContactMark extends THREE.Group {
   constructor() {
     super();
-    const plain = (color) => new THREE.MeshBasicMaterial({color, depthTest: false});
-    this.dot = new THREE.Mesh(new THREE.SphereBufferGeometry(DOT, 12, 8), plain(0xffffff));
-    this.ring = new THREE.Mesh(new THREE.RingBufferGeometry(0.8 * RING, RING, 24),
-      new THREE.MeshBasicMaterial({side: THREE.DoubleSide, depthTest: false}));
+    this.ring = new THREE.Mesh(new THREE.RingBufferGeometry(0.8 * RING, RING, 36),
+      new THREE.MeshBasicMaterial({side: THREE.DoubleSide}));
     this.shaft = new THREE.Mesh(new THREE.CylinderBufferGeometry(0.00175, 0.00175, 1, 12).rotateX(Math.PI / 2),
       material([0.97, 0.97, 0.97, 1]));
     this.head = new THREE.Mesh(new THREE.ConeBufferGeometry(0.0045, 0.014, 16).rotateX(Math.PI / 2),
       material([0.97, 0.97, 0.97, 1]));
     this.newtons = new Label();
-    this.add(this.dot, this.ring, this.shaft, this.head, this.newtons);
+    this.add(this.ring, this.shaft, this.head, this.newtons);
   }
 
   // numbered: whether the value of the force is shown.
@@ -253,7 +256,6 @@ class ContactMark extends THREE.Group {
     const point = length([x, y, z]), normal = new THREE.Vector3(nx, ny, nz).multiplyScalar(DIRECTION);
     const force = new THREE.Vector3(fx, fy, fz).multiplyScalar(FORCE), newtons = force.length();
     const ahead = new THREE.Vector3(0, 0, 1);
-    this.dot.position.copy(point);
     this.ring.position.copy(point).addScaledVector(normal, 6e-4);
     this.ring.quaternion.setFromUnitVectors(ahead, normal.normalize());
     this.ring.material.color.setHex(PHASES[phase] === undefined ? STRUCK : PHASES[phase]);
@@ -427,7 +429,7 @@ export class Drawing {
 }
 
 export function lights() {
-  const sun = new THREE.DirectionalLight(0xffffff, 0.7);
+  const sun = new THREE.DirectionalLight(0xffffff, 0.45);
   sun.position.set(0.4, 0.8, 1);
-  return [new THREE.HemisphereLight(0xffffff, 0xa0a0a8, 0.9), sun];
+  return [new THREE.HemisphereLight(0xffffff, 0x9c9894, 0.75), sun];
 }
