@@ -190,8 +190,8 @@ def text_shown(deadline):
 
 
 def write_below(text, file):
-    subprocess.run(["convert", file, "-font", FONT, "-pointsize", "15", "-fill", "#d0d4da", "-gravity", "southwest",
-                    "-annotate", "+14+12", text, "-strip", file], check=True)
+    subprocess.run(["convert", file, "-font", FONT, "-pointsize", "15", "-fill", "#d0d4da", "-undercolor", "#20242b80",
+                    "-gravity", "southwest", "-annotate", "+14+12", text, "-strip", file], check=True)
 
 
 def main():
