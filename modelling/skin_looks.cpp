@@ -11,7 +11,7 @@ const Rgb kBack(0.91f, 0.73f, 0.62f), kPalmar(0.95f, 0.74f, 0.65f), kBlush(0.93f
 const Rgb kCreaseTint(0.85f, 0.74f, 0.70f);  // of the skin's colour, in the deepest fold
 constexpr float kPalmCreases = 0.5f;  // of that: lines across the palm's wide triangles would look torn
 const Rgb kSleeve(0.36f, 0.44f, 0.55f);
-constexpr float kSleeveShade = 0.18f, kOpeningShade = 0.75f;  // what is taken of the light
+constexpr float kSleeveShade = 0.5f, kOpeningShade = 0.75f;  // what is taken of the light
 constexpr double kRound = 0.85;                 // how far round the finger half a nail goes [rad]
 constexpr double kBegins = 0.42, kPast = 0.72;  // along the bone, of its length; past its end, in its radii
 

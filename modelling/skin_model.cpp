@@ -13,8 +13,8 @@ namespace mrhi {
 namespace {
 
 constexpr double kCell = 0.0026, kDetailedCell = 0.0015;  // length of the finest triangles' sides [m]
-constexpr double kOntoCrease = 0.45 * kDetailedCell;
-constexpr double kTipWorth = 4.0, kWebWorth = 20.0, kSleeveWorth = 0.3;
+constexpr double kOntoLine = 0.45 * kDetailedCell;
+constexpr double kTipWorth = 4.0, kWebWorth = 20.0, kSleeveWorth = 0.6;
 constexpr double kLeastWeight = 0.01;  // of a bone; less is left to the others
 
 Hand hand_in(const HandPosture& posture) {
@@ -157,7 +157,7 @@ TriangleMesh finest_skin(bool detailed) {
   const SkinBox box = skin_box();
   TriangleMesh mesh = surface_net(skin_distance, box.lowest, box.highest, detailed ? kDetailedCell : kCell);
   if (detailed)
-    for (Vector3& vertex : mesh.vertices) vertex = onto_crease(vertex, kOntoCrease);
+    for (Vector3& vertex : mesh.vertices) vertex = onto_hem(onto_crease(vertex, kOntoLine), kOntoLine);
   return mesh;
 }
 

@@ -12,15 +12,17 @@ namespace {
 
 constexpr double kWeb = 0.005;         // how far two fingers' skins are rounded into each other [m]
 constexpr double kFlesh = 0.010;       // two parts of the palm [m]
-constexpr double kForearm = 0.010;     // the palm and the forearm [m]
+constexpr double kForearm = 0.005;     // the palm and the forearm [m]
 constexpr double kBetweenWebs = 0.92;  // of a finger's width
 constexpr double kCreaseDepth = 0.0003, kNailFoldDepth = 0.0003;  // [m]
 constexpr double kReliefZone = 0.003;                             // about the skin, in which folds count [m]
 constexpr double kForearmWidth = 0.0250, kForearmThickness = 0.0138;  // half of each [m]
+constexpr double kWristLength = 0.036;                                // of the forearm in the palm [m]
 constexpr double kForearmEnd = -0.030;                                // x of the rest hand, in the sleeve [m]
 constexpr double kSleeveEnd = -0.0438;                                // x of its opening [m]
 constexpr double kSleeveThickness = 0.0034, kOpeningDepth = 0.006;    // [m]
 constexpr double kSleeveEdge = 0.0016;                                // over which its edges are round [m]
+constexpr double kBare = 0.0008;  // above the hand, up to which the sleeve's hem has the skin's colour [m]
 
 /// min - w h^2 / 4 with h = 1 - |a - b| / w, where that is > 0: smooth where the two meet, deepest there by w
 /// / 4, and the lesser of both beyond w. Unlike a minimum it is not associative: the order of the parts is
@@ -104,7 +106,7 @@ std::vector<Cone> palm_cones() {
   const Vector3 up = Vector3::UnitZ();
   for (int f = 1; f < kFingers; ++f) {
     const double r = bone(f, 0).radius;
-    cones.push_back({on(f, 0, 0.0), on(f, 0, 1.0), 1.05 * r, r});
+    cones.push_back({on(f, 0, 0.0), on(f, 0, 1.0), 0.9 * r, r});
     cones.push_back({on(f, 0, 0.35) - 0.003 * up, on(f, 0, 1.0) - 0.0025 * up, 1.05 * r, 0.97 * r});
     cones.push_back({on(f, 0, 0.97) + 0.1 * r * up, on(f, 1, 0.06) + 0.1 * r * up, 0.98 * r, 0.85 * r});
   }
@@ -128,11 +130,11 @@ std::vector<Cone> web_cones() {
   return cones;
 }
 
-/// An elliptic cylinder about x that is wider than the forearm by `out`, and ends round at x = `end`. x
-/// counts twice from half a thickness before the end on: it ends in half an ellipsoid.
+/// An elliptic cylinder about x that is wider than the forearm by `out`, and ends in half an ellipsoid from x
+/// = `end` on.
 double forearm_distance(const Vector3& p, double end, double out) {
   const double half_width = kForearmWidth + out, half_thickness = kForearmThickness + out;
-  const Vector3 q(std::max(0.0, p.x() - end + 0.5 * half_thickness) * 2.0,
+  const Vector3 q(std::max(0.0, p.x() - end) * half_thickness / kWristLength,
                   p.y() * half_thickness / half_width, p.z() - 0.001);
   return q.norm() - half_thickness;
 }
@@ -165,7 +167,7 @@ double hand_distance(const Vector3& point) {
   for (const Cone& cone : palm) distance = smooth_min(distance, cone.distance(point), kFlesh);
   for (const Finger& finger : fingers) distance = smooth_min(distance, finger.distance(point), kWeb);
   for (const Cone& cone : webs) distance = smooth_min(distance, cone.distance(point), kWeb);
-  distance = smooth_min(distance, forearm_distance(point, 0.012, 0.0), kForearm);
+  distance = smooth_min(distance, forearm_distance(point, 0.0, 0.0), kForearm);
   return std::max(distance, kForearmEnd - point.x());
 }
 
@@ -173,9 +175,15 @@ double hand_distance(const Vector3& point) {
 
 SkinSleeve skin_sleeve(const Vector3& point) {
   constexpr double kShade = 0.004;  // width of the sleeve's shade on the skin [m]
-  const double sleeve = sleeve_distance(point), hand = hand_distance(point);
-  if (sleeve > hand - 0.5 * kSleeveEdge) return {false, smooth_step(kShade, 0.0, sleeve)};
+  if (hand_distance(point) < kBare) return {false, smooth_step(kShade, 0.0, sleeve_distance(point))};
   return {true, smooth_step(0.0025, 0.0005, opening_distance(point))};
+}
+
+Vector3 onto_hem(const Vector3& point, double margin) {
+  constexpr double kClear = 0.0001;  // below kBare, so that rounding does not decide what it is [m]
+  const double hand = hand_distance(point), off = hand - (kBare - kClear);
+  if (sleeve_distance(point) > hand || std::abs(off) >= margin) return point;
+  return point - off * gradient(hand_distance, point).normalized();
 }
 
 double skin_distance(const Vector3& point) {

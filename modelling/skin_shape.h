@@ -20,6 +20,8 @@ struct SkinSleeve {
   double shade;
 };
 SkinSleeve skin_sleeve(const Vector3& point);
+/// The nearest place on the line between skin and sleeve within `margin` [m], else the point itself.
+Vector3 onto_hem(const Vector3& point, double margin);
 
 /// A box around it.
 struct SkinBox {

@@ -95,7 +95,7 @@ BoneWeights skin_weights(const Vector3& point) {
 }
 
 /// A bend counts half for the bone before and half for the bone after; the thumb's first has no bone before
-/// it.
+/// it. The wrist counts for the middle metacarpal.
 std::array<float, kCapsules> capsule_shares(const Vector3& point) {
   const BoneWeights weights = skin_weights(point);
   std::array<float, kCapsules> shares{};
@@ -109,6 +109,7 @@ std::array<float, kCapsules> capsule_shares(const Vector3& point) {
       if (b > first_bone(f)) shares[i - 1] += half;
     }
   }
+  shares[static_cast<std::size_t>(capsule_index(2, 0))] += static_cast<float>(weights[kWristBone]);
   const Capsule& palm = rest_hand().hand.capsules[kPalm];
   shares[kPalm] =
       static_cast<float>(1.0 - smooth_step(0.0, kPalmZone, distance_to_axis(palm, point) - palm.radius));
