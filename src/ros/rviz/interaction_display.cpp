@@ -349,7 +349,8 @@ class InteractionDisplay : public rviz::Display {
       if (i >= hands) continue;
       const RenderedHand& rendered = result.rendered[i];
       if (layers_["hand"].shown->getBool())
-        skins_[i]->draw(rendered, result, view_.state(), tone_, drawn_from_);
+        skins_[i]->draw(rendered, result, view_.state(), tone_, layers_["capsules"].shown->getBool(),
+                        drawn_from_);
       if (layers_["ghost"].shown->getBool())
         ghosts_[i]->draw_ghost(rendered.hand, result.tracked[i], style, drawn_from_);
     }

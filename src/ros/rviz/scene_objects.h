@@ -206,7 +206,7 @@ class MarkerScene {
       item = std::make_unique<Item>(marker.type, context_, layer(marker.ns));
     item->drawn->setMessage(marker);
     const bool is_body = marker.ns == "objects" || marker.ns == "fixtures";
-    if (is_body && marker.color.a > 0.0f) brighten(marker.color, *item->drawn);
+    if ((is_body && marker.color.a > 0.0f) || marker.ns == "capsules") brighten(marker.color, *item->drawn);
     if (!is_body || marker.text.empty()) return;
     if (!item->selection) item->selection = selection_(marker.text, item->node);
     item->selection->updateTrackedBoxes();  // the frame of what is selected follows the body
@@ -235,17 +235,59 @@ inline float sheen(const Eigen::Vector3f& normal, const Eigen::Vector3f& to_eye)
          kEdge * (1.0f - facing) * (1.0f - facing) * (1.0f - facing);
 }
 
-inline void add_vertex(const Vector3& place, const Vector3& normal, const Rgb& c, float alpha,
-                       Ogre::ManualObject& object) {
-  object.position(static_cast<float>(place.x()), static_cast<float>(place.y()),
-                  static_cast<float>(place.z()));
-  object.normal(static_cast<float>(normal.x()), static_cast<float>(normal.y()),
-                static_cast<float>(normal.z()));
+using SkinTriangles = std::vector<std::array<int, 3>>;
+
+/// Each triangle of a skin in four: the middle of edge i is vertex i after the skin's own.
+class FineSkin {
+ public:
+  explicit FineSkin(const Skin& skin) {
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+      const auto [found, is_new] =
+          middles.try_emplace(std::minmax(a, b), static_cast<int>(skin.size() + edges_.size()));
+      if (is_new) edges_.push_back({static_cast<std::size_t>(a), static_cast<std::size_t>(b)});
+      return found->second;
+    };
+    for (const auto& [a, b, c] : skin.triangles()) {
+      const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      for (const auto& triangle : SkinTriangles{{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
+        triangles_.push_back(triangle);
+    }
+  }
+
+  const SkinTriangles& triangles() const { return triangles_; }
+
+  /// Adds the middles, on the curve that the normals at the ends give, so that outlines are round: Phong
+  /// tessellation (Boubekeur & Alexa 2008), half as strong as a plane's, which is right for an arc.
+  ///
+  ///     m = (a + b) / 2 + (s.n_b n_b - s.n_a n_a) / 8,   s = b - a
+  void add_middles(SkinSurface& surface, std::vector<Rgb>& colours) const {
+    std::size_t next = surface.vertices.size();
+    surface.vertices.resize(next + edges_.size());
+    colours.resize(next + edges_.size());
+    for (const auto& [a, b] : edges_) {
+      const Vector3 side = surface.vertices[b] - surface.vertices[a];
+      const Vector3 &n_a = surface.normals[a], &n_b = surface.normals[b];
+      surface.vertices[next] =
+          surface.vertices[a] + 0.5 * side + 0.125 * (side.dot(n_b) * n_b - side.dot(n_a) * n_a);
+      colours[next++] = 0.5f * (colours[a] + colours[b]);
+    }
+  }
+
+ private:
+  std::vector<std::array<std::size_t, 2>> edges_;
+  SkinTriangles triangles_;
+};
+
+constexpr double kFineWithin = 0.6;  ///< distance from the camera at which facets would be seen [m]
+
+inline void add_vertex(const Vector3& place, const Rgb& c, float alpha, Ogre::ManualObject& object) {
+  object.position(to_ogre(place));
   object.colour(c[0], c[1], c[2], alpha);
 }
 
-/// A hand's skin as one mesh with a normal and a colour for each vertex, lighting included: that of light.h,
-/// and the sheen of skin, which depends on the camera.
+/// A hand's skin as one mesh with a colour for each vertex, lighting included: that of light.h, and the sheen
+/// of skin, which depends on the camera. Finer near the camera.
 class SkinObject {
  public:
   SkinObject(Ogre::SceneManager* manager, Ogre::SceneNode* parent)
@@ -264,22 +306,27 @@ class SkinObject {
   SkinObject(const SkinObject&) = delete;
   SkinObject& operator=(const SkinObject&) = delete;
 
-  /// `eye` in world [m]. Draws nothing and returns false if the hand has no complete skin.
-  bool draw(const RenderedHand& rendered, const FrameResult& result, const SimulationState& state,
-            const SkinTone& tone, const Vector3& eye) {
+  /// `eye` in world [m]. Draws nothing if the hand has no complete skin. `glassy`: shows the capsules within.
+  void draw(const RenderedHand& rendered, const FrameResult& result, const SimulationState& state,
+            const SkinTone& tone, bool glassy, const Vector3& eye) {
     object_->setVisible(skin_.pose(rendered.hand, surface_));
-    if (!object_->isVisible()) return false;
+    if (!object_->isVisible()) return;
     press_flat(result.contacts, state, rendered.hand.id, skin_, surface_);
     paint_.paint(rendered, surface_, colours_, tone);
     for (std::size_t v = 0; v < colours_.size(); ++v) {
       const Eigen::Vector3f to_eye = (eye - surface_.vertices[v]).cast<float>().normalized();
       colours_[v] = (colours_[v] + sheen(surface_.normals[v].cast<float>(), to_eye)).min(1.0f);
     }
-    begin(false);
-    for (std::size_t v = 0; v < skin_.size(); ++v)
-      add_vertex(surface_.vertices[v], surface_.normals[v], colours_[v], 1.0f, *object_);
-    end(rendered.hand.side);
-    return true;
+    static const FineSkin fine(skin_);
+    const bool near = (eye - rendered.hand.palm.position).norm() < kFineWithin;
+    if (glassy)  // clear of the capsules' surface
+      for (std::size_t v = 0; v < skin_.size(); ++v) surface_.vertices[v] += kClear * surface_.normals[v];
+    if (near) fine.add_middles(surface_, colours_);
+    const SkinTriangles& triangles = near ? fine.triangles() : skin_.triangles();
+    begin(glassy, triangles.size());
+    for (std::size_t v = 0; v < colours_.size(); ++v)
+      add_vertex(surface_.vertices[v], colours_[v], glassy ? kGlassy : 1.0f, *object_);
+    end(rendered.hand.side, triangles);
   }
 
   /// The tracked hand where it differs from the rendered one, most opaque at its outline.
@@ -287,34 +334,38 @@ class SkinObject {
     const bool apart = farthest_apart(rendered, tracked) > style.ghost_from;
     object_->setVisible(apart && skin_.pose(tracked, surface_) && skin_.pose(rendered, beneath_));
     if (!object_->isVisible()) return;
-    begin(true);
+    begin(true, skin_.triangles().size());
     for (std::size_t v = 0; v < skin_.size(); ++v) {
       const Vector3 to_eye = (eye - surface_.vertices[v]).normalized();
       const auto outline = static_cast<float>(1.0 - std::abs(surface_.normals[v].dot(to_eye)));
       const float seen = ghost_opacity((surface_.vertices[v] - beneath_.vertices[v]).norm(), style);
-      add_vertex(surface_.vertices[v], surface_.normals[v], ghost_colour(surface_.normals[v], style),
+      add_vertex(surface_.vertices[v], ghost_colour(surface_.normals[v], style),
                  seen * (0.35f + 0.65f * outline), *object_);
     }
-    end(tracked.side);
+    end(tracked.side, skin_.triangles());
   }
 
   void hide() { object_->setVisible(false); }
 
  private:
-  void begin(bool blended) {
-    object_->estimateVertexCount(skin_.size());
-    object_->estimateIndexCount(3 * skin_.triangles().size());
+  static constexpr float kGlassy = 0.4f;    // opacity over capsules
+  static constexpr double kClear = 0.0012;  // [m]
+
+  void begin(bool blended, std::size_t triangles) {
+    object_->estimateVertexCount(triangles / 2 + 2);  // Euler's formula for a sphere
+    object_->estimateIndexCount(3 * triangles);
+    const std::string& material = vertex_colour_material(blended)->getName();
     if (std::exchange(begun_, true)) {
+      object_->setMaterialName(0, material, kGroup);
       object_->beginUpdate(0);
     } else {
-      object_->begin(vertex_colour_material(blended)->getName(), Ogre::RenderOperation::OT_TRIANGLE_LIST,
-                     kGroup);
+      object_->begin(material, Ogre::RenderOperation::OT_TRIANGLE_LIST, kGroup);
     }
   }
 
-  void end(Side side) {
+  void end(Side side, const SkinTriangles& triangles) {
     const std::size_t second = side == Side::left ? 2 : 1;
-    for (const auto& t : skin_.triangles())
+    for (const auto& t : triangles)
       object_->triangle(static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[second]),
                         static_cast<std::uint32_t>(t[3 - second]));
     object_->end();
