@@ -57,6 +57,19 @@ void add_rings(const std::vector<Contact>& contacts, FrictionState state, const 
   if (rings) rings->colors.resize(rings->points.size(), friction_color(state, style));
 }
 
+/// Distance from a body's centre of mass to its surface along a direction [m]; 0 if the centre is outside.
+double surface_distance(const Body& body, const Pose& pose, const Vector3& direction) {
+  double farthest = 0.0;
+  for (const PlacedShape& placed : body.shapes) {
+    const Pose at = pose * placed.pose;
+    const Quaternion to_shape = at.orientation.conjugate();
+    const Vector3 centre = to_shape * (pose.position - at.position), along = to_shape * direction;
+    const auto exit = [&](const auto& shape) { return shape.exit_distance(centre, along); };
+    farthest = std::max(farthest, std::visit(exit, placed.shape).value_or(0.0));
+  }
+  return farthest;
+}
+
 /// Adds a force's arrow, and its number at the arrow's outer end. The inner end is `distance` from `place`:
 /// against the force, which then pushes (contacts), or along it, which then pulls (grasp assist) [m].
 struct ForceMarkers {
@@ -120,9 +133,11 @@ void add_contacts(const Scene& scene, const FrameResult& result, const Simulatio
   ForceMarkers forces{style, arrows, numbers};
   for (const Contact& contact : result.contacts)
     forces.add(contact.force, contact.point, 2.0 * contact.radius + kGap, false);
-  for (const GraspSupport& assist : result.assists)
-    forces.add(assist.force, state.bodies[assist.body].pose.position,
-               scene.bodies[assist.body].bounding_radius, true);
+  for (const GraspSupport& assist : result.assists) {
+    const Pose& pose = state.bodies[assist.body].pose;
+    forces.add(assist.force, pose.position,
+               surface_distance(scene.bodies[assist.body], pose, assist.force.normalized()) + kGap, true);
+  }
 }
 
 /// An impact that spans several frames gets one ring.
@@ -177,7 +192,7 @@ void add_ring(const Ring& ring, const Pose& place, visualization_msgs::Marker& m
 
 namespace {
 
-constexpr int kSides = 6;
+constexpr int kSides = 12;
 
 /// Half of an arrow's outline, rotated about its axis.
 struct OutlinePoint {

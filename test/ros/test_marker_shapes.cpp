@@ -72,15 +72,14 @@ TEST_F(MarkerShapes, an_arrow_goes_from_its_beginning_to_its_tip_and_is_closed) 
     EXPECT_NEAR(highest, 0.08, 1e-9);
     const Solid solid(marker.points);
     EXPECT_TRUE(solid.closed);
-    // A prism and a pyramid on a regular hexagon, whose area is 3 sqrt(3)/2 r^2; outward, so positive.
-    const double hexagon = 1.5 * std::sqrt(3.0);
-    EXPECT_NEAR(solid.volume, hexagon * (9e-6 * 0.06 + 36e-6 * 0.02 / 3.0), 1e-12);
+    // A prism and a pyramid on a regular dodecagon, whose area is 3 r^2; outward, so positive.
+    EXPECT_NEAR(solid.volume, 3.0 * (9e-6 * 0.06 + 36e-6 * 0.02 / 3.0), 1e-12);
   }
 }
 
 TEST_F(MarkerShapes, an_arrow_may_be_all_head) {
   const Marker marker = add_arrow({{0, 0, 0}, {0, 0, 0.01}, 0.003, 0.006, 0.01}, color(1, 0, 0), 0, layer_);
-  EXPECT_NEAR(Solid(marker.points).volume, 1.5 * std::sqrt(3.0) * 36e-6 * 0.01 / 3.0, 1e-12);
+  EXPECT_NEAR(Solid(marker.points).volume, 3.0 * 36e-6 * 0.01 / 3.0, 1e-12);
 }
 
 TEST_F(MarkerShapes, a_ring_is_as_much_of_a_full_turn_as_it_is_to_be) {
