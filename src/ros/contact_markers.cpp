@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <variant>
 
 #include "../math/rotation.h"
 #include "../simulation/contact_phase.h"
