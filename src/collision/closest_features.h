@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 
 #include "mr_hand_interaction/math.h"
@@ -23,7 +25,7 @@ struct ClosestFeatures {
   Vector3 normal;         ///< unit, out of the shape towards the hand: moving the capsule along it separates
   Vector3 point;          ///< on the shape's surface
   double axis_parameter;  ///< s in 0..1 of the capsule's axis point that faces `point`
-  int face = -1;          ///< of a mesh: its flat face that has the normal
+  int part = -1;          ///< of a mesh: its face, edge or corner, as MeshSurface numbers them
 };
 
 /// Closed forms; shape frame at its centre. Exact also when the capsule's axis is inside the shape.
@@ -40,6 +42,16 @@ struct AxisSpan {
   bool at_edge = false;  ///< of a box or a cylinder
 };
 AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestFeatures& features);
+
+/// Unit normals of the perpendicular faces of a box or a cylinder that meet where its surface has a normal: a
+/// single one on a face. At a cylinder's rim they are those of the cap and of the side there.
+struct MeetingFaces {
+  void add(const Vector3& normal) { normals[count++] = normal; }
+
+  std::array<Vector3, 3> normals;
+  std::size_t count = 0;
+};
+MeetingFaces meeting_faces(const Shape& shape, const Vector3& normal);
 
 /// Distance from `point` along the unit vector `direction` to where this line leaves the shape, < 0 if that
 /// lies behind the point [m]. Shape's frame. Nothing if the line misses the shape, or for a mesh. A line is

@@ -17,38 +17,31 @@ Capsule to_local(const Pose& pose, const Capsule& capsule) {
   return {pose.to_local(capsule.start), pose.to_local(capsule.end), capsule.radius};
 }
 
-/// Part of the axis, from the point of the features towards `end`, over the face on that side of an edge.
+/// Part of the axis over the surface at the features, and over the faces beside an edge.
 ///
 /// A phalanx that hangs over an edge is nearest to it as soon as it tilts. Its pad still touches the face
 /// beside the edge: of the length over the face the fraction 1 - rise / depth, where the axis rises by `rise`
 /// above the face on it. The load then moves as it does between two points over one face, by the lever rule:
 /// to the middle of the length without tilt, and to the edge as the far end lifts off. It does so for faces
 /// up to kMaxFaceSine from the normal, or else a deep pad would lie on either face of a right angle.
-double over_face(const PlacedCollider& collider, const Capsule& capsule, const ClosestFeatures& features,
-                 double end) {
-  constexpr double kHeight = 2e-5, kStep = 2e-4;  // of a place beside the edge, over the face [m]
+AxisSpan span_over(const PlacedCollider& collider, const Capsule& capsule, const ClosestFeatures& features) {
   constexpr double kMaxFaceSine = 0.7;
+  AxisSpan span = collider.span(capsule, features);
+  if (features.distance >= 0.0 || span.s0 < span.s1) return span;
   const double s = features.axis_parameter;
   const Vector3 along = capsule.end - capsule.start;
-  const Vector3 step = (end > s ? kStep : -kStep) * along.normalized();
-  const Vector3 place = features.point + kHeight * features.normal + step;
-  const ClosestFeatures face = collider.closest({place, place, 0.0}, kStep);
-  const double sine = face.normal.cross(features.normal).norm();
-  if (face.distance > kStep || sine > kMaxFaceSine || face.normal.dot(features.normal) < 0.0) return s;
-  const AxisSpan span = collider.span(capsule, {face.distance, face.normal, face.point, s, face.face});
-  const double until = end > s ? span.s1 : span.s0;
-  const double rise = std::abs(face.normal.dot(along) * (until - s));
-  const double lifted = std::max(rise / -features.distance, sine / kMaxFaceSine);
-  return s + std::max(0.0, 1.0 - lifted) * (until - s);
-}
-
-/// Part of the axis over the surface at the features, beside an edge of a box or a cylinder on both sides.
-AxisSpan span_over(const PlacedCollider& collider, const Capsule& capsule, const ClosestFeatures& features) {
-  const AxisSpan span = collider.span(capsule, features);
-  if (!span.at_edge || features.distance >= 0.0) return span;
-  const AxisSpan faces{over_face(collider, capsule, features, 0.0),
-                       over_face(collider, capsule, features, 1.0), span.at_edge};
-  return faces.s1 > faces.s0 ? faces : span;
+  collider.each_face_beside(features, [&](const Vector3& normal, int part) {
+    const double sine = normal.cross(features.normal).norm();
+    if (sine > kMaxFaceSine || normal.dot(features.normal) < 0.0) return;
+    const auto touching = [&](double until) {
+      const double rise = std::abs(normal.dot(along) * (until - s));
+      const double lifted = std::max(rise / -features.distance, sine / kMaxFaceSine);
+      return s + std::max(0.0, 1.0 - lifted) * (until - s);
+    };
+    const AxisSpan face = collider.span(capsule, {features.distance, normal, features.point, s, part});
+    span.s0 = std::min(span.s0, touching(face.s0)), span.s1 = std::max(span.s1, touching(face.s1));
+  });
+  return span;
 }
 
 }  // namespace

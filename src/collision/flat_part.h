@@ -66,8 +66,10 @@ inline AxisSpan at_edge(const ClosestFeatures& features) {
   return {features.axis_parameter, features.axis_parameter, true};
 }
 /// Part of the axis over the piece of surface whose normal the features have. It always has the point of the
-/// features: rounding, or a normal that is only nearly the piece's, must not put the deepest point outside.
+/// features: rounding, or a normal that is only nearly the piece's, must not put the deepest point outside. A
+/// point if the axis passes the piece by.
 inline AxisSpan over(const Stretch& stretch, const ClosestFeatures& features) {
+  if (stretch.s0 >= stretch.s1) return at_point(features);
   return {std::min(std::max(stretch.s0, 0.0), features.axis_parameter),
           std::max(std::min(stretch.s1, 1.0), features.axis_parameter)};
 }

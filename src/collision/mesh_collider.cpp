@@ -179,7 +179,7 @@ ClosestFeatures MeshCollider::Impl::leave(const MeshShape& of, const Segment& se
   return leave_mesh(segment, of.surface, of.tree, face_at(of, nearest), known ? &*known : nullptr);
 }
 
-/// Reports no face, because a part's faces have numbers of their own.
+/// Names no part of the surface, because a part of the mesh has numbers of its own.
 std::optional<ClosestFeatures> MeshCollider::Impl::leave_parts(const Segment& segment) const {
   std::optional<ClosestFeatures> best;
   for (const MeshShape& part : parts) {
@@ -189,7 +189,7 @@ std::optional<ClosestFeatures> MeshCollider::Impl::leave_parts(const Segment& se
     const ClosestFeatures exit = leave(part, segment, search.nearest());
     if (!best || exit.distance < best->distance) best = exit;
   }
-  if (best) best->face = -1;
+  if (best) best->part = -1;
   return best;
 }
 
@@ -260,12 +260,11 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
   // gap has no direction, and for what is inside, where it points inwards.
   const SurfaceNearest& nearest = search.nearest();
   ClosestFeatures features{nearest.distance, search.gap() / nearest.distance, nearest.point,
-                           nearest.stretch.middle()};
+                           nearest.stretch.middle(), surface.number(nearest)};
   if (nearest.part == SurfacePart::face) {
     // The face's own normal has no rounding of a short gap.
     const Vector3 normal = surface.outward(nearest);
     features.normal = normal.dot(features.normal) < 0.0 ? Vector3(-normal) : normal;
-    features.face = nearest.index;
   }
   if (!has_parts && Impl::has_to_leave(impl_->shape, search)) {
     features = impl_->leave(impl_->shape, segment, nearest);
@@ -280,10 +279,12 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
 AxisSpan MeshCollider::span(const Capsule& capsule, const ClosestFeatures& features) const {
   const Segment axis(capsule);
   const double s = features.axis_parameter;
-  if (features.face < 0 || axis.along.isZero(0.0)) return {s, s};
   const MeshSurface& surface = impl_->shape.surface;
-  const Stretch over = surface.over(surface.faces()[static_cast<std::size_t>(features.face)], axis, s);
-  if ((over.s1 - over.s0) * axis.along.norm() < kMinFlatLength) return {s, s};
+  const bool is_face = features.part >= 0 && slot(features.part) < surface.faces().size();
+  if (!is_face || axis.along.isZero(0.0)) return {s, s};
+  const double least = kMinFlatLength / axis.along.norm();
+  const Stretch over = surface.over_nearest(surface.faces()[slot(features.part)], axis, s, 0.5 * least);
+  if (over.s1 - over.s0 < least) return {s, s};
   return {std::min(std::max(over.s0, 0.0), s), std::max(std::min(over.s1, 1.0), s)};
 }
 

@@ -26,8 +26,8 @@ class MeshCollider {
   /// solid that is not convex, the shortest way out through what is nearest.
   std::optional<ClosestFeatures> closest(const Capsule& capsule, double margin) const;
 
-  /// Part of the capsule's axis over the flat face that `closest` found; a point for an edge, a corner, or a
-  /// face of a curved surface.
+  /// Part of the capsule's axis over a flat face, that `closest` found or that is beside what it found; a
+  /// point for an edge, a corner, or a face of a curved surface.
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
 
   const MeshShape& shape() const;

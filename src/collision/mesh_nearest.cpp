@@ -240,7 +240,7 @@ class ExitSearch {
   ExitSearch(const Segment& segment, const MeshSurface& surface, double known)
       : segment_(segment), surface_(surface), known_(known) {}
 
-  bool found() const { return face_.face >= 0 || edge_index_ >= 0; }
+  bool found() const { return face_.face >= 0 || edge_.part >= 0; }
 
   /// Lower bound of a node's depth.
   double cost(const MeshTree::Node& node) const {
@@ -284,9 +284,10 @@ class ExitSearch {
     if (!edge.bulges) return;
     const auto exit = leave_by_edge(segment_, surface_, edge);
     if (!exit || !allowed(exit->distance)) return;
+    const int part = static_cast<int>(surface_.faces().size()) + index;
     const bool better =
-        exit->distance > edge_.distance || (exit->distance == edge_.distance && index < edge_index_);
-    if (better) edge_ = *exit, edge_index_ = index;
+        exit->distance > edge_.distance || (exit->distance == edge_.distance && part < edge_.part);
+    if (better) edge_ = *exit, edge_.part = part;
   }
 
   const Segment& segment_;
@@ -294,7 +295,6 @@ class ExitSearch {
   const double known_;
   Exit face_;
   ClosestFeatures edge_{-1e300, Vector3::UnitZ(), Vector3::Zero(), 0.5};
-  int edge_index_ = -1;
 };
 
 }  // namespace

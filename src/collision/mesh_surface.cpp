@@ -7,6 +7,9 @@ namespace {
 
 /// Largest bend of a flat edge [rad]. |n0 x n1| is the sine of the bend.
 constexpr double kFlat = 1e-6;
+/// Largest bend between the facets of a curved surface or of a rounded edge [rad]; modellers shade them
+/// smooth up to about as much.
+constexpr double kCrease = 0.5;
 /// Smallest distance of a point from a border, as a fraction of the border's length, and of a gap from a
 /// plane, as a fraction of its own length, that counts as clear.
 constexpr double kClear = 1e-5;
@@ -26,7 +29,8 @@ double crossing(const Segment& segment, const Vector3& normal, const MeshSurface
   const double from = across.dot(edge.start - segment.start), rise = across.dot(edge.along);
   if ((from < 0.0) == (from + rise < 0.0)) return 2.0;
   const Vector3 place = edge.start - from / rise * edge.along;
-  return segment.along.dot(place - segment.start) / segment.along.squaredNorm();
+  const Vector3 level = normal.cross(across);  // the segment seen along the normal
+  return level.dot(place - segment.start) / level.squaredNorm();
 }
 
 }  // namespace
@@ -43,7 +47,7 @@ MeshSurface::MeshSurface(const TriangleMesh& mesh) {
     const Vector3& start = corners_[slot(edge.from)];
     const int other = edge.other < 0 ? edge.face : edge.other;
     edges_.push_back(
-        {start, corners_[slot(edge.to)] - start, {{edge.from, edge.to}}, {{edge.face, other}}, false});
+        {start, corners_[slot(edge.to)] - start, {{edge.from, edge.to}}, {{edge.face, other}}, false, false});
   }
   add_sides(flat.edges);
   find_bends(flat.one_piece);
@@ -88,6 +92,7 @@ void MeshSurface::find_bends(bool one_piece) {
     const std::array<Vector3, 2> normal = normals(edge);
     const double bend = normal[0].cross(normal[1]).dot(edge.along.normalized());
     edge.bulges = bend > kFlat;
+    edge.crease = edge.faces[0] == edge.faces[1] || std::atan2(bend, normal[0].dot(normal[1])) > kCrease;
     convex_ = convex_ && bend > -kFlat;
   }
 }
@@ -142,6 +147,19 @@ Stretch MeshSurface::over(const Face& face, const Segment& segment, double s) co
     if ((dx == 0.0 && x0 > 0.0) || stretch.s0 > stretch.s1) return {1.0, 0.0};
   }
   return stretch;
+}
+
+/// A place outside is nearest to the part that begins at the nearest crossing.
+Stretch MeshSurface::over_nearest(const Face& face, const Segment& segment, double s, double least) const {
+  const Stretch here = over(face, segment, s);
+  if (face.convex || here.s0 <= here.s1) return here;
+  double nearest = 2.0;
+  for (int i = face.first; i < face.first + face.count; ++i) {
+    const double crosses = crossing(segment, face.normal, edges_[slot(sides_[slot(i)].edge)]);
+    if (std::abs(crosses - s) < std::abs(nearest - s)) nearest = crosses;
+  }
+  const double beyond = nearest + std::copysign(least, nearest - s);
+  return beyond < 0.0 || beyond > 1.0 ? here : around(face, segment, beyond);
 }
 
 /// The height above the plane, n.start - height + s rise, is 0 at the crossing; held in 0..1 that is the

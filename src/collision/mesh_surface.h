@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "closest_features.h"
 #include "mr_hand_interaction/scene/shape.h"
 #include "segment.h"
 
@@ -71,6 +72,7 @@ class MeshSurface {
     std::array<int, 2> corners;
     std::array<int, 2> faces;  // equal at the border of an open surface
     bool bulges;               // the solid does, along it
+    bool crease;               // it bulges by more than between the facets of a curved surface
   };
 
   explicit MeshSurface(const TriangleMesh& mesh);
@@ -102,6 +104,30 @@ class MeshSurface {
   bool is_first_edge(int edge, int corner) const {
     return edges_at_[first_edge_[static_cast<std::size_t>(corner)]] == edge;
   }
+  /// Number of a part in a list of the faces, then the edges, then the corners.
+  int number(const SurfaceNearest& part) const {
+    const int faces = static_cast<int>(faces_.size());
+    if (part.part == SurfacePart::face) return part.index;
+    return faces + part.index + (part.part == SurfacePart::corner ? static_cast<int>(edges_.size()) : 0);
+  }
+  /// Calls `see(normal, face)` for the faces at the creases of an edge or a corner; of an open surface with
+  /// the normal on the features' side.
+  template <typename See>
+  void each_face_beside(const ClosestFeatures& features, const See& see) const {
+    const auto beside = [&](const Edge& edge) {
+      if (!edge.crease) return;
+      for (const int face : edge.faces) {
+        const Vector3& normal = faces_[slot(face)].normal;
+        see(closed_ || normal.dot(features.normal) > 0.0 ? normal : Vector3(-normal), face);
+      }
+    };
+    const int edge = features.part - static_cast<int>(faces_.size());
+    const int corner = edge - static_cast<int>(edges_.size());
+    if (edge < 0) return;
+    if (corner < 0) return beside(edges_[slot(edge)]);
+    for (std::size_t i = first_edge_[slot(corner)]; i < first_edge_[slot(corner) + 1]; ++i)
+      beside(edges_[slot(edges_at_[i])]);
+  }
   /// Calls `see(corner)` for the corners around a face.
   template <typename See>
   void each_corner(const Face& face, const See& see) const {
@@ -114,6 +140,8 @@ class MeshSurface {
   /// What of the segment is straight above or below the face: the part around s if the face is not convex;
   /// empty (s0 > s1) if nothing.
   Stretch over(const Face& face, const Segment& segment, double s) const;
+  /// The same of the part around s or nearest to it, if that reaches on by `least`.
+  Stretch over_nearest(const Face& face, const Segment& segment, double s, double least) const;
   /// Distance 1e300 if an edge of the face is nearer than its inside.
   SurfaceNearest nearest_on_face(int face, const Segment& segment) const;
   SurfaceNearest nearest_on_edge(int edge, const Segment& segment) const;

@@ -39,6 +39,23 @@ AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestF
       [&](const auto& typed) { return typed.span(capsule, features); });
 }
 
+/// For a box, the faces whose normals are on the side of n; for a cylinder, the end and the side at n's
+/// azimuth. A face parallel to n carries none of the normal force and is left out.
+MeetingFaces meeting_faces(const Shape& shape, const Vector3& normal) {
+  MeetingFaces faces;
+  const auto add = [&](const Vector3& along) {
+    const double part = along.dot(normal);
+    if (std::abs(part) > kSameNormal) faces.add(part < 0.0 ? Vector3(-along) : along);
+  };
+  if (std::holds_alternative<Box>(shape)) {
+    for (int i = 0; i < 3; ++i) add(Vector3::Unit(i));
+  } else if (std::holds_alternative<Cylinder>(shape)) {
+    add(Vector3::UnitZ());
+    add(Vector3(normal.x(), normal.y(), 0.0).normalized());
+  }
+  return faces;
+}
+
 PlacedCollider::PlacedCollider(const PlacedShape& placed, const MeshCollider* mesh)
     : shape_(placed.shape),
       mesh_(mesh),

@@ -6,6 +6,7 @@
 #include "body_manifold.h"
 #include "closest_features.h"
 #include "mesh_collision.h"
+#include "mesh_tree.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
@@ -29,6 +30,14 @@ class PlacedCollider {
     return mesh_ != nullptr ? mesh_->span(capsule, features) : contact_span(capsule, shape_, features);
   }
 
+  /// Calls `see(normal, part)` for the flat faces beside the edge or corner at the features.
+  template <typename See>
+  void each_face_beside(const ClosestFeatures& features, const See& see) const {
+    if (mesh_ != nullptr) return mesh_->shape().surface.each_face_beside(features, see);
+    const MeetingFaces faces = meeting_faces(shape_, features.normal);
+    for (std::size_t i = 0; faces.count > 1 && i < faces.count; ++i) see(faces.normals[i], -1);
+  }
+
   /// Transforms between the body's frame and the shape's.
   ///     x_shape = R^T (x_body - t),   n_body = R n_shape;   lengths, s and distance are the same in both
   /// Shapes that have the body's frame skip the rotation, which would only add rounding.
@@ -37,7 +46,7 @@ class PlacedCollider {
     return {rotation_.transpose() * (in_body.start - position_),
             rotation_.transpose() * (in_body.end - position_), in_body.radius};
   }
-  /// Drops a mesh's face: call `span` in the shape's frame.
+  /// Drops a mesh's part: call `span` in the shape's frame.
   ClosestFeatures to_body(const ClosestFeatures& in_shape) const {
     if (has_bodys_frame_) return in_shape;
     return {in_shape.distance, rotation_ * in_shape.normal, rotation_ * in_shape.point + position_,

@@ -45,9 +45,10 @@ struct Stretch {
 
   double middle() const { return std::max(0.0, std::min(0.5 * (s0 + s1), 1.0)); }
   /// Clips to |x0 + s * dx| <= half. Returns early if both ends are within, as the quotients below could cut
-  /// an end off by an ulp. Keeps a level segment beside the slab: the caller must know that it is over it.
+  /// an end off by an ulp. Nothing is left of a level segment beside the slab.
   void clip_to_slab(double x0, double dx, double half) {
     if (std::abs(x0) <= half && std::abs(x0 + dx) <= half) return;
+    if (dx == 0.0 && std::abs(x0) > half + kOnSurface) s0 = 1.0, s1 = 0.0;
     clip(-x0, -dx, half), clip(x0, dx, half);
   }
   /// Keeps what is no farther than `radius` from the z axis. |x + s d|^2 = r^2, seen along z, has the roots

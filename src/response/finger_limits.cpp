@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "../collision/closest_features.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
@@ -17,49 +18,22 @@ constexpr double kMinStretch = 1e-9;
 /// Upper bound of friction over normal force at any edge of these parameters.
 constexpr double kMaxEdgeFriction = 4.0;
 
-/// Normals of the perpendicular faces that meet at an edge or corner.
-struct MeetingFaces {
-  std::array<Vector3, 3> normals;
-  std::size_t count = 0;
-
-  void add(const Vector3& normal) { normals[count++] = normal; }
-
-  /// True if friction on these faces supports the object's force on the finger, F = normal + drag. Components
-  /// out of a face are its normal load, N_i = max(0, n_i.F); the rest is friction, |F - sum N_i n_i| <= mu
-  /// sum N_i.
-  ///
-  /// A single cone about n, 30 to 45 degrees from the faces, would let the pad squeeze the edge out. A load
-  /// N_i above kMaxFaceLoad n_i.n, with n_i.n its part of a unit force along n, is not supported.
-  bool supports(const Vector3& normal, const Vector3& drag, double friction) const {
-    const Vector3 force = normal + drag;
-    Vector3 rest = force;
-    double load = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double out = std::max(0.0, normals[i].dot(force));
-      if (out > kMaxFaceLoad * normals[i].dot(normal)) return false;
-      rest -= out * normals[i];
-      load += out;
-    }
-    return rest.squaredNorm() <= friction * friction * load * load;
+/// True if friction on the faces supports the object's force on the finger, F = normal + drag. Components out
+/// of a face are its normal load, N_i = max(0, n_i.F); the rest is friction, |F - sum N_i n_i| <= mu sum N_i.
+///
+/// A single cone about n, 30 to 45 degrees from the faces, would let the pad squeeze the edge out. A load N_i
+/// above kMaxFaceLoad n_i.n, with n_i.n its part of a unit force along n, is not supported.
+bool supports(const MeetingFaces& faces, const Vector3& normal, const Vector3& drag, double friction) {
+  const Vector3 force = normal + drag;
+  Vector3 rest = force;
+  double load = 0.0;
+  for (std::size_t i = 0; i < faces.count; ++i) {
+    const double out = std::max(0.0, faces.normals[i].dot(force));
+    if (out > kMaxFaceLoad * faces.normals[i].dot(normal)) return false;
+    rest -= out * faces.normals[i];
+    load += out;
   }
-};
-
-// For a box, the three faces whose normals are on the side of n; for a cylinder, the end and the side at n's
-// azimuth. A face parallel to n carries none of the normal force and is left out.
-MeetingFaces faces_at(const Shape& shape, const Vector3& normal) {
-  constexpr double kSameNormal = 1e-6;
-  MeetingFaces faces;
-  const auto add = [&](const Vector3& along) {
-    const double part = along.dot(normal);
-    if (std::abs(part) > kSameNormal) faces.add(part < 0.0 ? Vector3(-along) : along);
-  };
-  if (std::holds_alternative<Box>(shape)) {
-    for (int i = 0; i < 3; ++i) add(Vector3::Unit(i));
-  } else {
-    add(Vector3::UnitZ());
-    add(Vector3(normal.x(), normal.y(), 0.0).normalized());
-  }
-  return faces;
+  return rest.squaredNorm() <= friction * friction * load * load;
 }
 
 }  // namespace
@@ -68,12 +42,12 @@ MeetingFaces faces_at(const Shape& shape, const Vector3& normal) {
 // force. Bisection assumes that they support every f below the largest. The lower bound is the friction of a
 // single face.
 double friction_at_edge(const Shape& shape, const Vector3& normal, const Vector3& along, double friction) {
-  const MeetingFaces faces = faces_at(shape, normal);
+  const MeetingFaces faces = meeting_faces(shape, normal);
   double lowest = friction, highest = std::max(friction, kMaxEdgeFriction);
-  if (faces.supports(normal, highest * along, friction)) return highest;
+  if (supports(faces, normal, highest * along, friction)) return highest;
   for (int i = 0; i < 20; ++i) {
     const double middle = 0.5 * (lowest + highest);
-    (faces.supports(normal, middle * along, friction) ? lowest : highest) = middle;
+    (supports(faces, normal, middle * along, friction) ? lowest : highest) = middle;
   }
   return lowest;
 }

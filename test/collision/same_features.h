@@ -16,7 +16,7 @@ inline void expect_same(const std::optional<ClosestFeatures>& a, const std::opti
   EXPECT_EQ(a->normal, b->normal);
   EXPECT_EQ(a->point, b->point);
   EXPECT_EQ(a->axis_parameter, b->axis_parameter);
-  EXPECT_EQ(a->face, b->face);
+  EXPECT_EQ(a->part, b->part);
 }
 
 }  // namespace mrhi

@@ -4,6 +4,8 @@
 #include "collision/mesh_collision.h"
 #include "collision/mesh_surface.h"
 #include "collision/mesh_tree.h"
+#include "collision/scene_geometry.h"
+#include "mesh_shapes.h"
 #include "random_capsules.h"
 #include "same_features.h"
 #include "support/tessellated.h"
@@ -164,6 +166,73 @@ TEST(Tessellation, a_finger_lies_along_a_face_as_along_a_boxs) {
       if ((of_box.s1 - of_box.s0) * 0.025 < 0.0021) continue;
       EXPECT_NEAR(of_mesh.s0, of_box.s0, 1e-9);
       EXPECT_NEAR(of_mesh.s1, of_box.s1, 1e-9);
+    }
+  }
+}
+
+/// Part of the capsule's axis over the faces beside what it is nearest to.
+AxisSpan beside(const PlacedCollider& collider, const Capsule& capsule, int* faces = nullptr) {
+  const ClosestFeatures features = collider.closest(capsule, 1.0);
+  AxisSpan all{features.axis_parameter, features.axis_parameter};
+  collider.each_face_beside(features, [&](const Vector3& normal, int part) {
+    const AxisSpan span =
+        collider.span(capsule, {features.distance, normal, features.point, features.axis_parameter, part});
+    all.s0 = std::min(all.s0, span.s0), all.s1 = std::max(all.s1, span.s1);
+    if (faces != nullptr) ++*faces;
+  });
+  return all;
+}
+struct PlacedMesh {
+  explicit PlacedMesh(const TriangleMesh& mesh) : collider(mesh) {}
+  MeshCollider collider;
+  PlacedShape shape{Mesh{}, Pose()};
+  PlacedCollider placed{shape, &collider};
+};
+
+TEST(Tessellation, a_finger_beside_an_edge_is_over_the_faces_of_a_box) {
+  constexpr double kLength = 0.025;  // [m]
+  constexpr double kShort = 0.0045;  // [m]: 2 mm over a face, and at most as much beside it
+  const PlacedShape box{Box{kHalf}, Pose()};
+  const PlacedCollider of_box(box, nullptr);
+  Random random(26);
+  for (const int n : {1, 10}) {
+    const PlacedMesh mesh(tessellated_box(kHalf, n));
+    int over = 0;
+    for (int i = 0; i < 3000 && !HasFailure(); ++i) {
+      const Vector3 along =
+          kLength * Vector3(1.0, random.between(-0.5, 0.5), random.between(-0.1, 0.1)).normalized();
+      const Vector3 middle(random.between(-0.06, 0.06), random.between(-0.03, 0.03), 0.016);
+      const Capsule capsule{middle - 0.5 * along, middle + 0.5 * along, 0.008};
+      const AxisSpan a = beside(of_box, capsule), b = beside(mesh.placed, capsule);
+      if ((a.s1 - a.s0) * kLength < kShort) continue;
+      EXPECT_NEAR(b.s0, a.s0, 1e-6) << i;
+      EXPECT_NEAR(b.s1, a.s1, 1e-6) << i;
+      ++over;
+    }
+    EXPECT_GT(over, 100);
+  }
+}
+
+TEST(Tessellation, a_finger_beside_an_edge_is_over_a_face_that_is_not_convex) {
+  const PlacedMesh angle(angle_mesh());
+  for (const double rise : {-0.001, 0.001}) {  // over either edge of an arm of 20 mm
+    const Vector3 start(0.02, -0.03, 0.026), along(0.0, 0.04, rise);
+    const AxisSpan span = beside(angle.placed, {start, start + along, 0.008});
+    EXPECT_NEAR(span.s0, 0.25, 0.01);
+    EXPECT_NEAR(span.s1, 0.75, 0.01);
+  }
+}
+
+TEST(Tessellation, facets_of_a_curved_surface_are_no_faces_beside_an_edge) {
+  Random random(27);
+  const PlacedMesh ball(tessellated_ball(0.02, 16)), ring(tessellated_ring(0.03, 0.01, 24));
+  for (const PlacedMesh* round : {&ball, &ring}) {
+    for (int i = 0; i < 300; ++i) {
+      const Vector3 middle = random.in_box(Vector3::Constant(0.03));
+      const Vector3 half = random.between(0.0, 0.01) * random.direction();
+      int faces = 0;
+      beside(round->placed, {middle - half, middle + half, 0.008}, &faces);
+      EXPECT_EQ(faces, 0);
     }
   }
 }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "support/grips.h"
+#include "support/tessellated.h"
 
 namespace mrhi {
 namespace {
@@ -129,8 +130,11 @@ double unrest(Body body, double half, double tilt, double gravity) {
 TEST(ImplicitCreep, a_body_narrower_than_a_fingertip_comes_to_rest_across_it) {
   for (const double half : {0.003, 0.005, 0.008, 0.01}) {
     const Vector3 bar(half, half, 0.075);
-    const std::vector<std::pair<const char*, Body>> bodies{
-        {"bar", box_body(2.0 * bar, 0.05)}, {"cube", box_body(Vector3::Constant(2.0 * half), 0.05)}};
+    std::vector<std::pair<const char*, Body>> bodies{{"bar", box_body(2.0 * bar, 0.05)},
+                                                     {"cube", box_body(Vector3::Constant(2.0 * half), 0.05)}};
+    bodies.emplace_back("mesh of a bar", bodies.front().second);
+    bodies.back().second.shapes.front().shape =
+        Mesh{std::make_shared<const TriangleMesh>(tessellated_box(bar, 2)), "", Vector3::Ones()};
     for (const auto& [name, body] : bodies) {
       for (const double tilt : {0.0, 0.5, 3.0}) {
         for (const double gravity : {0.0, kGravity})
