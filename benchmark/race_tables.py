@@ -1,7 +1,5 @@
 """The tables of docs/speed_accuracy.md, made of what scripts/benchmark writes; scripts/figures --page engines."""
 import collections
-import csv
-import math
 import os
 import re
 
@@ -38,19 +36,6 @@ CROWDS = [('8 dice dropped', 'crowd_heap_8'), ('50 cubes dropped', 'crowd_heap_5
           ('200 of them, gaps of 5 µm', 'crowd_close_200'), ('1000 of them, gaps of 20 µm', 'crowd_block_1000')]
 CROWD_ENGINES = (plot.OURS, 'jolt', 'box3d', 'ode', 'mujoco')
 HANDS = ('implicit', 'implicit; shipped hand')
-
-
-def merge(runs, folder):
-    """Puts results of several runs into `folder`, each scene from the last run that has it, and draws their charts."""
-    for name in ('speed_accuracy.csv', 'step_times.csv'):
-        of_scene = collections.OrderedDict()
-        for run in runs:
-            with open(os.path.join(run, name), newline='') as file:
-                head, *rows = list(csv.reader(file))
-            of_scene.update((scene, [row for row in rows if row[0] == scene]) for scene in dict.fromkeys(row[0] for row in rows))
-        with open(os.path.join(folder, name), 'w', newline='') as file:
-            csv.writer(file).writerows([head, *(row for rows in of_scene.values() for row in rows)])
-    plot.main(['', os.path.join(folder, 'speed_accuracy.csv')])
 
 
 def read(folder):

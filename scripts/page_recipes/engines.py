@@ -7,37 +7,39 @@ import tempfile
 from page_figures import PACKAGE
 from .measuring import LAWS, MeasurementError, Recipe, run, table
 
-RACE_CHARTS = {'summary': 'speed_accuracy', 'all': 'speed_accuracy_all', 'pinch_swing': 'pinch_swing'}
+CHARTS = {'engines': {'summary': 'speed_accuracy', 'all': 'speed_accuracy_all', 'pinch_swing': 'pinch_swing'}}
 
 
-def engines():
-    """Ours, Debian's engines, and those whose sources ENGINE_SOURCES names, such as --jolt DIR --box3d DIR."""
+def race(name, arguments, figures_of):
+    """Races ours, Debian's engines, and those whose sources ENGINE_SOURCES names, such as --jolt DIR --box3d DIR."""
     sources = os.environ.get('ENGINE_SOURCES', '').split()
     if not sources:
         raise MeasurementError('ENGINE_SOURCES is empty; allowed: options of scripts/benchmark, such as --jolt DIR --box3d DIR')
+    sys.path.insert(0, os.path.join(PACKAGE, 'benchmark'))
+    import race_tables
     folder = tempfile.mkdtemp()
     try:
-        quick, crowds = os.path.join(folder, 'quick'), os.path.join(folder, 'crowds')
-        run('benchmark', '--quick', '--output', quick, *sources)
-        run('benchmark', '--full', '--scene', 'crowd', '--output', crowds, *sources)  # --quick has but one crowd
-        return engines_figures([quick, crowds], folder)
+        run('benchmark', '--output', folder, *arguments, *sources)
+        rows, times = race_tables.read(folder)
+        versions = race_tables.versions(rows)
+        described = race_tables.described(versions, max(row.date for row in rows))
+        for chart, image in CHARTS.get(name, {}).items():
+            shutil.copyfile(os.path.join(folder, chart + '.png'), os.path.join(PACKAGE, 'docs', 'images', image + '.png'))
+        return dict(figures_of(race_tables, rows, times), versions=described), versions
     finally:
         shutil.rmtree(folder)
 
 
-def engines_figures(runs, folder):
-    """Of folders that scripts/benchmark wrote. Their charts, drawn in `folder`, become the page's."""
-    sys.path.insert(0, os.path.join(PACKAGE, 'benchmark'))
-    import race_tables
-    race_tables.merge(runs, folder)
-    rows, times = race_tables.read(folder)
-    versions = race_tables.versions(rows)
-    for chart, name in RACE_CHARTS.items():
-        shutil.copyfile(os.path.join(folder, chart + '.png'), os.path.join(PACKAGE, 'docs', 'images', name + '.png'))
-    return {'versions': race_tables.described(versions, max(row.date for row in rows)),
-            'results': table(*race_tables.results(rows)), 'crowds': table(*race_tables.crowds(rows, times))}, versions
+def engines():
+    return race('engines', ['--quick'], lambda tables, rows, times: {'results': table(*tables.results(rows))})
+
+
+def crowds():
+    return race('crowds', ['--full', '--scene', 'crowd'],  # --quick has but one crowd
+                lambda tables, rows, times: {'crowds': table(*tables.crowds(rows, times))})
 
 
 RECIPES = {
-    'engines': Recipe('25 minutes', LAWS + ['benchmark/speed_accuracy'], engines),
+    'engines': Recipe('15 minutes', LAWS + ['benchmark/speed_accuracy'], engines),
+    'crowds': Recipe('10 minutes', LAWS + ['benchmark/speed_accuracy'], crowds),
 }
