@@ -100,15 +100,16 @@ double worth_of(const Vector3& vertex) {
   return worth + kWebWorth * (all - most);
 }
 
-/// Nails and sleeve raised, nails' edges and creases sunk: no posture, but what keeps triangles' sides along
-/// them.
+/// Nails and sleeve raised, nails' edges, creases and what the sleeve shades sunk: no posture, but what keeps
+/// triangles' sides along them.
 Places with_relief(const Skin& skin, bool creases) {
   constexpr double kRelief = 0.0025;  // [m]
   Places places;
   for (const Vector3& vertex : skin.rest()) {
     const SkinNail here = skin_nail(vertex);
-    const double raised = here.nail - here.edge - (creases ? skin_crease(vertex) : 0.0);
-    places.push_back(vertex + kRelief * (raised + skin_sleeve(vertex).covers) * skin_normal(vertex));
+    const SkinSleeve sleeve = skin_sleeve(vertex);
+    const double sunk = here.edge + sleeve.shade + (creases ? skin_crease(vertex) : 0.0);
+    places.push_back(vertex + kRelief * (here.nail + sleeve.covers - sunk) * skin_normal(vertex));
   }
   return places;
 }
