@@ -200,7 +200,7 @@ constexpr std::size_t kMaxWaiting = 64;
 /// Time in which one stream takes over from another [s].
 constexpr double kTransition = 0.2;
 /// Largest distance between two streams' views of one hand [m].
-constexpr double kSameHandDistance = 0.15;
+constexpr double kSameHandOffset = 0.15;
 /// Smallest confidence used as a weight, so that hands without confidence are fused too.
 constexpr double kMinConfidence = 0.01;
 
@@ -329,7 +329,7 @@ std::optional<Hand> HandMerger::fuse(FusedSide& side, Nanoseconds stamp,
   std::optional<std::size_t> staying;
   for (std::size_t s = 0; s < seen.size(); ++s) {
     const bool agrees =
-        seen[s] && (seen[s]->palm.position - seen[*surest]->palm.position).norm() < kSameHandDistance;
+        seen[s] && (seen[s]->palm.position - seen[*surest]->palm.position).norm() < kSameHandOffset;
     const double confidence = agrees ? std::max(seen[s]->confidence, kMinConfidence) : 0.0;
     changed = changed || agrees != (side.weights[s] > 0.0);
     if (agrees && side.weights[s] > 0.0 && side.seen[s]) staying = s;
