@@ -57,7 +57,8 @@ Quaternion nearest_turn_of_any(const Matrix3& matrix) {
 /// determinant <= 0 would converge to a reflection, and a small one has an inverse of rounding errors: both
 /// take nearest_turn_of_any().
 Quaternion nearest_turn(const Matrix3& matrix) {
-  constexpr double kMinDeterminant = 1e-4, kConverged = 1e-28;  // relative to the matrix's norm, to its power
+  constexpr double kMinDeterminant = 1e-4,
+                   kOrthogonal = 1e-28;  // relative to the matrix's norm, to its power
   constexpr int kMaxIterations = 12;
   const double size = matrix.norm();
   if (!(matrix.determinant() > kMinDeterminant * size * size * size)) return nearest_turn_of_any(matrix);
@@ -68,7 +69,7 @@ Quaternion nearest_turn(const Matrix3& matrix) {
     const Matrix3 next = 0.5 * (scale * turn + (1.0 / scale) * dual);
     const double changed = (next - turn).squaredNorm();
     turn = next;
-    if (changed < kConverged) break;
+    if (changed < kOrthogonal) break;
   }
   return Quaternion(turn).normalized();
 }

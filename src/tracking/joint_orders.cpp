@@ -15,7 +15,7 @@ namespace {
 /// Largest ratio of a bone to the adult's, relative to the hand's size.
 constexpr double kMaxBoneRatio = 4.0;
 /// Longest bone of a hand of unknown size [m].
-constexpr double kMaxBoneLength = 0.3;
+constexpr double kMaxBone = 0.3;
 /// Largest misfit of a bone, ln(kMaxBoneRatio): a stray joint says nothing about the order.
 constexpr double kMaxMisfit = 1.4;
 
@@ -99,7 +99,7 @@ std::optional<std::size_t> worst_joint(const HandJoints& hand) {
   std::array<int, kHandJoints> faults{};
   int max_faults = 0;
   for (const Measured& bone : bones) {
-    const double longest = size ? kMaxBoneRatio * *size * bone.link->adult : kMaxBoneLength;
+    const double longest = size ? kMaxBoneRatio * *size * bone.link->adult : kMaxBone;
     if (!(bone.length > longest)) continue;
     for (const std::size_t end : {bone.link->from, bone.link->to})
       max_faults = std::max(max_faults, ++faults[end]);
