@@ -58,7 +58,8 @@ void add_rings(const std::vector<Contact>& contacts, FrictionState state, const 
   if (rings) rings->colors.resize(rings->points.size(), friction_color(state, style));
 }
 
-/// Distance from a body's centre of mass to its surface along a direction [m]; 0 if the centre is outside.
+/// Distance from a body's centre of mass to its surface along a direction [m]; that to its bounding sphere
+/// for a mesh, or if the centre is outside.
 double surface_distance(const Body& body, const Pose& pose, const Vector3& direction) {
   double farthest = 0.0;
   for (const PlacedShape& placed : body.shapes) {
@@ -68,7 +69,7 @@ double surface_distance(const Body& body, const Pose& pose, const Vector3& direc
     const auto exit = [&](const auto& shape) { return shape.exit_distance(centre, along); };
     farthest = std::max(farthest, std::visit(exit, placed.shape).value_or(0.0));
   }
-  return farthest;
+  return farthest > 0.0 ? farthest : body.bounding_radius;
 }
 
 /// Adds a force's arrow, and its number at the arrow's outer end. The inner end is `distance` from `place`:
