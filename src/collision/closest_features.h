@@ -43,6 +43,10 @@ struct AxisSpan {
 };
 AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestFeatures& features);
 
+/// Largest sine of the angle by which a pad at an edge is tilted from a face beside it and still lies on that:
+/// beyond it a deep pad would lie on either face of a right angle.
+constexpr double kMaxTilt = 0.7;
+
 /// Unit normals of the perpendicular faces of a box or a cylinder that meet where its surface has a normal: a
 /// single one on a face. At a cylinder's rim they are those of the cap and of the side there.
 struct MeetingFaces {

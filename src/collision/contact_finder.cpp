@@ -17,33 +17,6 @@ Capsule to_local(const Pose& pose, const Capsule& capsule) {
   return {pose.to_local(capsule.start), pose.to_local(capsule.end), capsule.radius};
 }
 
-/// Part of the axis over the surface at the features, and over the faces beside an edge.
-///
-/// A phalanx that hangs over an edge is nearest to it as soon as it tilts. Its pad still touches the face
-/// beside the edge: of the length over the face the fraction 1 - rise / depth, where the axis rises by `rise`
-/// above the face on it. The load then moves as it does between two points over one face, by the lever rule:
-/// to the middle of the length without tilt, and to the edge as the far end lifts off. It does so for faces
-/// up to kMaxFaceSine from the normal, or else a deep pad would lie on either face of a right angle.
-AxisSpan span_over(const PlacedCollider& collider, const Capsule& capsule, const ClosestFeatures& features) {
-  constexpr double kMaxFaceSine = 0.7;
-  AxisSpan span = collider.span(capsule, features);
-  if (features.distance >= 0.0 || span.s0 < span.s1) return span;
-  const double s = features.axis_parameter;
-  const Vector3 along = capsule.end - capsule.start;
-  collider.each_face_beside(features, [&](const Vector3& normal, int part) {
-    const double sine = normal.cross(features.normal).norm();
-    if (sine > kMaxFaceSine || normal.dot(features.normal) < 0.0) return;
-    const auto touching = [&](double until) {
-      const double rise = std::abs(normal.dot(along) * (until - s));
-      const double lifted = std::max(rise / -features.distance, sine / kMaxFaceSine);
-      return s + std::max(0.0, 1.0 - lifted) * (until - s);
-    };
-    const AxisSpan face = collider.span(capsule, {features.distance, normal, features.point, s, part});
-    span.s0 = std::min(span.s0, touching(face.s0)), span.s1 = std::max(span.s1, touching(face.s1));
-  });
-  return span;
-}
-
 }  // namespace
 
 ContactFinder::ContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity,
@@ -137,7 +110,8 @@ void ContactFinder::find_touch(const TouchingPair& pair, double step, double mar
     features.distance =
         features.normal.dot(in_shape.axis_point(features.axis_parameter) - features.point) - in_shape.radius;
   }
-  const AxisSpan span = span_over(collider, in_shape, features);
+  const AxisSpan span = collider.pad(in_shape, features);
+  if (span.s0 == span.s1) features.axis_parameter = span.s0;
   if (!collider.has_bodys_frame()) features = collider.to_body(features);
   touch(pair, features, span, before);
 }

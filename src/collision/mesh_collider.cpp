@@ -282,10 +282,19 @@ AxisSpan MeshCollider::span(const Capsule& capsule, const ClosestFeatures& featu
   const MeshSurface& surface = impl_->shape.surface;
   const bool is_face = features.part >= 0 && slot(features.part) < surface.faces().size();
   if (!is_face || axis.along.isZero(0.0)) return {s, s};
-  const double least = kMinFlatLength / axis.along.norm();
-  const Stretch over = surface.over_nearest(surface.faces()[slot(features.part)], axis, s, 0.5 * least);
-  if (over.s1 - over.s0 < least) return {s, s};
+  const Stretch over = surface.over(surface.faces()[slot(features.part)], axis, s);
+  if ((over.s1 - over.s0) * axis.along.norm() < kMinFlatLength) return {s, s};
   return {std::min(std::max(over.s0, 0.0), s), std::max(std::min(over.s1, 1.0), s)};
+}
+
+AxisSpan MeshCollider::pad(const Capsule& capsule, const ClosestFeatures& features) const {
+  const Segment axis(capsule);
+  const double s = features.axis_parameter;
+  if (features.part < 0) return {s, s};
+  const Pad pad = impl_->shape.surface.pad(axis, features);
+  const double middle = 0.5 * (pad.s0 + pad.s1);
+  if (pad.longest * axis.along.norm() < kMinFlatLength) return {middle, middle};
+  return {pad.s0, pad.s1};
 }
 
 }  // namespace mrhi

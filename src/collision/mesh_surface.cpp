@@ -7,31 +7,37 @@ namespace {
 
 /// Largest bend of a flat edge [rad]. |n0 x n1| is the sine of the bend.
 constexpr double kFlat = 1e-6;
-/// Largest bend between the facets of a curved surface or of a rounded edge [rad]; modellers shade them
-/// smooth up to about as much.
-constexpr double kCrease = 0.5;
 /// Smallest distance of a point from a border, as a fraction of the border's length, and of a gap from a
 /// plane, as a fraction of its own length, that counts as clear.
 constexpr double kClear = 1e-5;
+/// Least part of a face that a pad has to lie on, or it ends there [m].
+constexpr double kSliver = 1e-6;
 
 double nearest_to(const Vector3& place, const Segment& segment) {
   const double squared = segment.along.squaredNorm();
   return squared == 0.0 ? 0.5 : clamp_unit(segment.along.dot(place - segment.start) / squared);
 }
 
-/// Where the segment, seen along the face, crosses an edge of it; nothing (2) if it passes it by. With q =
-/// along x n across the segment in the face's plane, the edge's ends are q.(start - p) and that plus q.edge
-/// to one side of it: it crosses if the signs differ, at start - from / rise * edge. An end that is on the
-/// line counts as >= 0, so that a ray through a corner crosses one of the two edges there, or both or none;
-/// but for rounding, as an edge's far end is a sum. Signs differ, so that rise is not 0.
-double crossing(const Segment& segment, const Vector3& normal, const MeshSurface::Edge& edge) {
-  const Vector3 across = segment.along.cross(normal);
-  const double from = across.dot(edge.start - segment.start), rise = across.dot(edge.along);
-  if ((from < 0.0) == (from + rise < 0.0)) return 2.0;
-  const Vector3 place = edge.start - from / rise * edge.along;
-  const Vector3 level = normal.cross(across);  // the segment seen along the normal
-  return level.dot(place - segment.start) / level.squaredNorm();
-}
+/// A segment seen along a normal n, on the surface under it. With q = along x n across it, an edge's ends are
+/// q.(start - p) and that plus q.edge to one side of it.
+struct Seen {
+  Seen(const Segment& segment, const Vector3& normal)
+      : start(segment.start), across(segment.along.cross(normal)), along(normal.cross(across)) {
+    along /= along.squaredNorm();
+  }
+  /// Where it crosses an edge, 0..1 on the segment; nothing (2) if it passes it by. It crosses if the signs
+  /// differ, at start - from / rise * edge. An end that is on the line counts as >= 0, so that a ray through
+  /// a corner crosses one of the two edges there, or both or none; but for rounding, as an edge's far end is
+  /// a sum. Signs differ, so that rise is not 0.
+  double crossing(const MeshSurface::Edge& edge) const {
+    const Vector3 to = edge.start - start;
+    const double from = across.dot(to), rise = across.dot(edge.along);
+    if ((from < 0.0) == (from + rise < 0.0)) return 2.0;
+    return along.dot(to) - from / rise * along.dot(edge.along);
+  }
+
+  Vector3 start, across, along;
+};
 
 }  // namespace
 
@@ -47,7 +53,7 @@ MeshSurface::MeshSurface(const TriangleMesh& mesh) {
     const Vector3& start = corners_[slot(edge.from)];
     const int other = edge.other < 0 ? edge.face : edge.other;
     edges_.push_back(
-        {start, corners_[slot(edge.to)] - start, {{edge.from, edge.to}}, {{edge.face, other}}, false, false});
+        {start, corners_[slot(edge.to)] - start, {{edge.from, edge.to}}, {{edge.face, other}}, false});
   }
   add_sides(flat.edges);
   find_bends(flat.one_piece);
@@ -92,7 +98,6 @@ void MeshSurface::find_bends(bool one_piece) {
     const std::array<Vector3, 2> normal = normals(edge);
     const double bend = normal[0].cross(normal[1]).dot(edge.along.normalized());
     edge.bulges = bend > kFlat;
-    edge.crease = edge.faces[0] == edge.faces[1] || std::atan2(bend, normal[0].dot(normal[1])) > kCrease;
     convex_ = convex_ && bend > -kFlat;
   }
 }
@@ -114,10 +119,10 @@ bool MeshSurface::is_convex(const Face& face) const {
 /// By the number of sides that a ray from there crosses. An odd number is inside (Jordan); any direction
 /// does.
 bool MeshSurface::inside(const Face& face, const Vector3& place) const {
-  const Segment ray(Capsule{place, place + any_normal(face.normal), 0.0});
+  const Seen ray(Segment(Capsule{place, place + any_normal(face.normal), 0.0}), face.normal);
   bool inside = false;
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const double s = crossing(ray, face.normal, edges_[slot(sides_[slot(i)].edge)]);
+    const double s = ray.crossing(edges_[slot(sides_[slot(i)].edge)]);
     if (s != 2.0 && s > 0.0) inside = !inside;
   }
   return inside;
@@ -128,8 +133,9 @@ Stretch MeshSurface::around(const Face& face, const Segment& segment, double s) 
   if (!inside(face, segment.at(s))) return {1.0, 0.0};
   Stretch stretch;
   if (segment.along.isZero(0.0)) return stretch;
+  const Seen seen(segment, face.normal);
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const double crosses = crossing(segment, face.normal, edges_[slot(sides_[slot(i)].edge)]);
+    const double crosses = seen.crossing(edges_[slot(sides_[slot(i)].edge)]);
     if (crosses <= s) stretch.s0 = std::max(stretch.s0, crosses);
     if (crosses > s) stretch.s1 = std::min(stretch.s1, crosses);
   }
@@ -149,17 +155,67 @@ Stretch MeshSurface::over(const Face& face, const Segment& segment, double s) co
   return stretch;
 }
 
-/// A place outside is nearest to the part that begins at the nearest crossing.
-Stretch MeshSurface::over_nearest(const Face& face, const Segment& segment, double s, double least) const {
-  const Stretch here = over(face, segment, s);
-  if (face.convex || here.s0 <= here.s1) return here;
-  double nearest = 2.0;
-  for (int i = face.first; i < face.first + face.count; ++i) {
-    const double crosses = crossing(segment, face.normal, edges_[slot(sides_[slot(i)].edge)]);
-    if (std::abs(crosses - s) < std::abs(nearest - s)) nearest = crosses;
+/// A convex face by how far the place is beyond its sides.
+int MeshSurface::face_over(int part, const Vector3& place) const {
+  int best = -1;
+  double least = 1e300;
+  each_face_around(part, [&](int index) {
+    const Face& face = faces_[slot(index)];
+    double beyond = face.convex || inside(face, place) ? -1e300 : 1.0;
+    for (int i = face.first; face.convex && i < face.first + face.count; ++i) {
+      const Side& side = sides_[slot(i)];
+      beyond = std::max(beyond, side.outward.dot(place) - side.reach);
+    }
+    if (beyond < least) least = beyond, best = index;
+  });
+  return best;
+}
+
+/// A pad that is pressed in by D at s is pressed in by D - rise elsewhere, where the axis rises above the
+/// faces under it by n.along for each of them. It lies on
+///     integral of max(0, 2 (D - rise) / D - 1) ds
+/// to that side: all of a face without tilt, 1 - rise / D of a face that ends with this rise, and a length
+/// that goes over from facet to facet of a curved or rough surface, as its load does. What is tilted by more
+/// than kMaxTilt is another side of the body.
+///
+/// Along a line a little beside the axis: what is symmetric has edges and corners straight under it.
+Pad MeshSurface::pad(const Segment& axis, const ClosestFeatures& deepest) const {
+  constexpr double kAside = 1e-7, kOnwards = 0.6e-7;  // [m]
+  constexpr int kMaxFaces = 64;
+  const double length = axis.along.norm(), sliver = kSliver / length;
+  const Vector3& up = deepest.normal;
+  const Vector3 aside = kAside / length * up.cross(axis.along), on = kOnwards / length * axis.along;
+  Seen line(axis, up);
+  line.start += aside;
+  const int first = face_over(deepest.part, deepest.point + aside + on);
+  Pad pad{deepest.axis_parameter, deepest.axis_parameter, 0.0};
+  for (const double side : {-1.0, 1.0}) {
+    double s = deepest.axis_parameter + kOnwards / length, rise = 0.0;
+    int index = first;
+    for (int count = 0; index >= 0 && count < kMaxFaces; ++count) {
+      const Face& face = faces_[slot(index)];
+      double until = side > 0.0 ? 1.0 : 0.0;
+      int next = -1;
+      for (int i = face.first; i < face.first + face.count; ++i) {
+        const Edge& edge = edges_[slot(sides_[slot(i)].edge)];
+        const double crosses = line.crossing(edge);
+        if (crosses == 2.0 || side * (crosses - s) <= 0.0 || side * (until - crosses) <= 0.0) continue;
+        until = crosses;
+        next = edge.faces[0] == edge.faces[1] ? -1 : edge.faces[edge.faces[0] == index ? 1 : 0];
+      }
+      const bool away = face.normal.dot(up) < 0.0;
+      const double slope = away ? -face.normal.dot(axis.along) : face.normal.dot(axis.along);
+      const double risen = rise + slope * (until - s), step = std::abs(until - s);
+      const double tilt = face.normal.cross(up).norm();
+      const double lifted = std::max(std::max(rise + risen, 0.0) / -deepest.distance, tilt / kMaxTilt);
+      if (step > sliver && (lifted >= 1.0 || (closed_ && away))) break;
+      const double lies = std::max(0.0, 1.0 - lifted) * step;
+      (side < 0.0 ? pad.s0 : pad.s1) += side * lies;
+      pad.longest = std::max(pad.longest, lies);
+      rise = risen, s = until, index = next;
+    }
   }
-  const double beyond = nearest + std::copysign(least, nearest - s);
-  return beyond < 0.0 || beyond > 1.0 ? here : around(face, segment, beyond);
+  return pad;
 }
 
 /// The height above the plane, n.start - height + s rise, is 0 at the crossing; held in 0..1 that is the

@@ -54,6 +54,11 @@ struct SurfaceNearest {
   int index = -1;  ///< of the face, edge or corner
 };
 
+/// Part s0..s1 of a finger's axis on which its pad lies, and the longest part of it over one flat face.
+struct Pad {
+  double s0, s1, longest;
+};
+
 /// The surface of a triangle mesh: flat faces, the edges between them and their corners, with normals for
 /// each (Baerentzen & Aanaes 2005: the angle-weighted normal at the nearest point tells inside from outside).
 ///
@@ -72,7 +77,6 @@ class MeshSurface {
     std::array<int, 2> corners;
     std::array<int, 2> faces;  // equal at the border of an open surface
     bool bulges;               // the solid does, along it
-    bool crease;               // it bulges by more than between the facets of a curved surface
   };
 
   explicit MeshSurface(const TriangleMesh& mesh);
@@ -110,24 +114,6 @@ class MeshSurface {
     if (part.part == SurfacePart::face) return part.index;
     return faces + part.index + (part.part == SurfacePart::corner ? static_cast<int>(edges_.size()) : 0);
   }
-  /// Calls `see(normal, face)` for the faces at the creases of an edge or a corner; of an open surface with
-  /// the normal on the features' side.
-  template <typename See>
-  void each_face_beside(const ClosestFeatures& features, const See& see) const {
-    const auto beside = [&](const Edge& edge) {
-      if (!edge.crease) return;
-      for (const int face : edge.faces) {
-        const Vector3& normal = faces_[slot(face)].normal;
-        see(closed_ || normal.dot(features.normal) > 0.0 ? normal : Vector3(-normal), face);
-      }
-    };
-    const int edge = features.part - static_cast<int>(faces_.size());
-    const int corner = edge - static_cast<int>(edges_.size());
-    if (edge < 0) return;
-    if (corner < 0) return beside(edges_[slot(edge)]);
-    for (std::size_t i = first_edge_[slot(corner)]; i < first_edge_[slot(corner) + 1]; ++i)
-      beside(edges_[slot(edges_at_[i])]);
-  }
   /// Calls `see(corner)` for the corners around a face.
   template <typename See>
   void each_corner(const Face& face, const See& see) const {
@@ -140,8 +126,8 @@ class MeshSurface {
   /// What of the segment is straight above or below the face: the part around s if the face is not convex;
   /// empty (s0 > s1) if nothing.
   Stretch over(const Face& face, const Segment& segment, double s) const;
-  /// The same of the part around s or nearest to it, if that reaches on by `least`.
-  Stretch over_nearest(const Face& face, const Segment& segment, double s, double least) const;
+  /// Part of a capsule's axis on which its pad lies, around the deepest point: that of the features.
+  Pad pad(const Segment& axis, const ClosestFeatures& deepest) const;
   /// Distance 1e300 if an edge of the face is nearer than its inside.
   SurfaceNearest nearest_on_face(int face, const Segment& segment) const;
   SurfaceNearest nearest_on_edge(int edge, const Segment& segment) const;
@@ -161,6 +147,20 @@ class MeshSurface {
   };
   void add_sides(const std::vector<FlatFaces::Edge>& edges);
   void find_bends(bool one_piece);
+  /// Calls `see(face)` for the faces around a part by its number: seen from a corner, those left of its
+  /// edges.
+  template <typename See>
+  void each_face_around(int part, const See& see) const {
+    const int edge = part - static_cast<int>(faces_.size()), corner = edge - static_cast<int>(edges_.size());
+    if (edge < 0) return see(part);
+    if (corner < 0) return see(edges_[slot(edge)].faces[0]), see(edges_[slot(edge)].faces[1]);
+    for (std::size_t i = first_edge_[slot(corner)]; i < first_edge_[slot(corner) + 1]; ++i) {
+      const Edge& of = edges_[slot(edges_at_[i])];
+      see(of.faces[of.corners[0] == corner ? 0 : 1]);
+    }
+  }
+  /// That of the faces around a part which a place beside it is over.
+  int face_over(int part, const Vector3& place) const;
   bool is_convex(const Face& face) const;
   bool inside(const Face& face, const Vector3& place) const;
   Stretch around(const Face& face, const Segment& segment, double s) const;

@@ -56,6 +56,33 @@ MeetingFaces meeting_faces(const Shape& shape, const Vector3& normal) {
   return faces;
 }
 
+/// A phalanx that hangs over an edge is nearest to it as soon as it tilts. Its pad still touches the face
+/// beside the edge: of the length over the face the fraction 1 - rise / depth, where the axis rises by `rise`
+/// above the face on it. The load then moves as it does between two points over one face, by the lever rule:
+/// to the middle of the length without tilt, and to the edge as the far end lifts off. It does so for faces
+/// up to kMaxTilt from the normal.
+AxisSpan PlacedCollider::pad(const Capsule& capsule, const ClosestFeatures& features) const {
+  AxisSpan pad = span(capsule, features);
+  const Vector3 along = capsule.end - capsule.start;
+  if (features.distance >= 0.0 || pad.s0 < pad.s1 || along.isZero(0.0)) return pad;
+  if (mesh_ != nullptr) return mesh_->pad(capsule, features);
+  const double s = features.axis_parameter;
+  const MeetingFaces faces = meeting_faces(shape_, features.normal);
+  for (std::size_t i = 0; faces.count > 1 && i < faces.count; ++i) {
+    const Vector3& normal = faces.normals[i];
+    const double tilt = normal.cross(features.normal).norm();
+    if (tilt > kMaxTilt) continue;
+    const auto touching = [&](double until) {
+      const double rise = std::abs(normal.dot(along) * (until - s));
+      const double lifted = std::max(rise / -features.distance, tilt / kMaxTilt);
+      return s + std::max(0.0, 1.0 - lifted) * (until - s);
+    };
+    const AxisSpan face = contact_span(capsule, shape_, {features.distance, normal, features.point, s});
+    pad.s0 = std::min(pad.s0, touching(face.s0)), pad.s1 = std::max(pad.s1, touching(face.s1));
+  }
+  return pad;
+}
+
 PlacedCollider::PlacedCollider(const PlacedShape& placed, const MeshCollider* mesh)
     : shape_(placed.shape),
       mesh_(mesh),

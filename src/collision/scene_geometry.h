@@ -30,13 +30,8 @@ class PlacedCollider {
     return mesh_ != nullptr ? mesh_->span(capsule, features) : contact_span(capsule, shape_, features);
   }
 
-  /// Calls `see(normal, part)` for the flat faces beside the edge or corner at the features.
-  template <typename See>
-  void each_face_beside(const ClosestFeatures& features, const See& see) const {
-    if (mesh_ != nullptr) return mesh_->shape().surface.each_face_beside(features, see);
-    const MeetingFaces faces = meeting_faces(shape_, features.normal);
-    for (std::size_t i = 0; faces.count > 1 && i < faces.count; ++i) see(faces.normals[i], -1);
-  }
+  /// Part of the axis on which the pad of a capsule lies: `span`, or over the faces beside an edge.
+  AxisSpan pad(const Capsule& capsule, const ClosestFeatures& features) const;
 
   /// Transforms between the body's frame and the shape's.
   ///     x_shape = R^T (x_body - t),   n_body = R n_shape;   lengths, s and distance are the same in both

@@ -170,17 +170,9 @@ TEST(Tessellation, a_finger_lies_along_a_face_as_along_a_boxs) {
   }
 }
 
-/// Part of the capsule's axis over the faces beside what it is nearest to.
-AxisSpan beside(const PlacedCollider& collider, const Capsule& capsule, int* faces = nullptr) {
-  const ClosestFeatures features = collider.closest(capsule, 1.0);
-  AxisSpan all{features.axis_parameter, features.axis_parameter};
-  collider.each_face_beside(features, [&](const Vector3& normal, int part) {
-    const AxisSpan span =
-        collider.span(capsule, {features.distance, normal, features.point, features.axis_parameter, part});
-    all.s0 = std::min(all.s0, span.s0), all.s1 = std::max(all.s1, span.s1);
-    if (faces != nullptr) ++*faces;
-  });
-  return all;
+/// Part of the capsule's axis on which its pad lies.
+AxisSpan pad(const PlacedCollider& collider, const Capsule& capsule) {
+  return collider.pad(capsule, collider.closest(capsule, 1.0));
 }
 struct PlacedMesh {
   explicit PlacedMesh(const TriangleMesh& mesh) : collider(mesh) {}
@@ -189,51 +181,64 @@ struct PlacedMesh {
   PlacedCollider placed{shape, &collider};
 };
 
-TEST(Tessellation, a_finger_beside_an_edge_is_over_the_faces_of_a_box) {
-  constexpr double kLength = 0.025;  // [m]
-  constexpr double kShort = 0.0045;  // [m]: 2 mm over a face, and at most as much beside it
+TEST(Tessellation, a_finger_beside_an_edge_lies_on_the_faces_of_a_box) {
+  constexpr double kLength = 0.025;   // [m]
+  constexpr double kShort = 0.00201;  // [m]: shorter pads of a mesh are points
   const PlacedShape box{Box{kHalf}, Pose()};
   const PlacedCollider of_box(box, nullptr);
   Random random(26);
   for (const int n : {1, 10}) {
     const PlacedMesh mesh(tessellated_box(kHalf, n));
-    int over = 0;
+    int at_edges = 0;
     for (int i = 0; i < 3000 && !HasFailure(); ++i) {
       const Vector3 along =
           kLength * Vector3(1.0, random.between(-0.5, 0.5), random.between(-0.1, 0.1)).normalized();
       const Vector3 middle(random.between(-0.06, 0.06), random.between(-0.03, 0.03), 0.016);
       const Capsule capsule{middle - 0.5 * along, middle + 0.5 * along, 0.008};
-      const AxisSpan a = beside(of_box, capsule), b = beside(mesh.placed, capsule);
+      const ClosestFeatures features = of_box.closest(capsule, 1.0);
+      const AxisSpan a = of_box.pad(capsule, features), b = pad(mesh.placed, capsule);
       if ((a.s1 - a.s0) * kLength < kShort) continue;
-      EXPECT_NEAR(b.s0, a.s0, 1e-6) << i;
-      EXPECT_NEAR(b.s1, a.s1, 1e-6) << i;
-      ++over;
+      EXPECT_NEAR(b.s0, a.s0, 1e-4) << i;  // 2.5 um: the mesh's pad is that of a line 0.1 um beside the axis
+      EXPECT_NEAR(b.s1, a.s1, 1e-4) << i;
+      if (of_box.span(capsule, features).at_edge) ++at_edges;
     }
-    EXPECT_GT(over, 100);
+    EXPECT_GT(at_edges, 100);
   }
 }
 
-TEST(Tessellation, a_finger_beside_an_edge_is_over_a_face_that_is_not_convex) {
+TEST(Tessellation, a_finger_beside_an_edge_lies_on_a_face_that_is_not_convex) {
   const PlacedMesh angle(angle_mesh());
   for (const double rise : {-0.001, 0.001}) {  // over either edge of an arm of 20 mm
     const Vector3 start(0.02, -0.03, 0.026), along(0.0, 0.04, rise);
-    const AxisSpan span = beside(angle.placed, {start, start + along, 0.008});
-    EXPECT_NEAR(span.s0, 0.25, 0.01);
-    EXPECT_NEAR(span.s1, 0.75, 0.01);
+    const Capsule capsule{start, start + along, 0.008};
+    const double depth = -angle.placed.closest(capsule, 1.0).distance;
+    const double length = 0.5 * (1.0 - 0.5 * std::abs(rise) / depth);
+    const AxisSpan span = pad(angle.placed, capsule);
+    EXPECT_NEAR(span.s1 - span.s0, length, 1e-3);
+    EXPECT_NEAR(rise > 0.0 ? span.s0 : span.s1, rise > 0.0 ? 0.25 : 0.75, 0.01);
   }
 }
 
-TEST(Tessellation, facets_of_a_curved_surface_are_no_faces_beside_an_edge) {
+// With D the depth, a ball of radius R falls away from the pad by x^2 / 2 R, so that it lies on the integral
+// of max(0, 1 - x^2 / R D) to either side, but for its tilt x / R.
+TEST(Tessellation, a_finger_lies_on_the_facets_of_a_ball_as_on_the_ball) {
+  const double radius = 0.02, depth = 0.002, half_length = 0.012;
+  double side = 0.0;
+  for (double x = 0.5e-6; x < half_length; x += 1e-6)
+    side += 1e-6 * std::max(0.0, 1.0 - std::max(x * x / (radius * depth), x / (kMaxTilt * radius)));
   Random random(27);
-  const PlacedMesh ball(tessellated_ball(0.02, 16)), ring(tessellated_ring(0.03, 0.01, 24));
-  for (const PlacedMesh* round : {&ball, &ring}) {
-    for (int i = 0; i < 300; ++i) {
-      const Vector3 middle = random.in_box(Vector3::Constant(0.03));
-      const Vector3 half = random.between(0.0, 0.01) * random.direction();
-      int faces = 0;
-      beside(round->placed, {middle - half, middle + half, 0.008}, &faces);
-      EXPECT_EQ(faces, 0);
-    }
+  const TriangleMesh mesh = tessellated_ball(radius, 80);
+  const MeshCollider collider(mesh);
+  const MeshSurface surface(mesh);
+  for (int i = 0; i < 200 && !HasFailure(); ++i) {
+    const Vector3 out = random.direction();
+    const Vector3 half =
+        half_length * Eigen::AngleAxisd(random.between(0.0, 6.0), out).toRotationMatrix() * any_normal(out);
+    const Vector3 middle = (radius + 0.008 - depth) * out;
+    const Capsule capsule{middle - half, middle + half, 0.008};
+    const Pad span = surface.pad(Segment(capsule), *collider.closest(capsule, 0.001));
+    EXPECT_NEAR((span.s1 - span.s0) * half_length, side, 0.1 * side) << i;  // facets of 0.8 mm
+    EXPECT_NEAR(0.5 * (span.s0 + span.s1), 0.5, 0.2e-3 / half_length) << i;
   }
 }
 

@@ -132,9 +132,15 @@ TEST(ImplicitCreep, a_body_narrower_than_a_fingertip_comes_to_rest_across_it) {
     const Vector3 bar(half, half, 0.075);
     std::vector<std::pair<const char*, Body>> bodies{{"bar", box_body(2.0 * bar, 0.05)},
                                                      {"cube", box_body(Vector3::Constant(2.0 * half), 0.05)}};
-    bodies.emplace_back("mesh of a bar", bodies.front().second);
-    bodies.back().second.shapes.front().shape =
-        Mesh{std::make_shared<const TriangleMesh>(tessellated_box(bar, 2)), "", Vector3::Ones()};
+    const auto add = [&](const char* name, const TriangleMesh& mesh) {
+      bodies.emplace_back(name, bodies.front().second);
+      bodies.back().second.shapes.front().shape =
+          Mesh{std::make_shared<const TriangleMesh>(mesh), "", Vector3::Ones()};
+    };
+    add("mesh of a bar", tessellated_box(bar, 2));
+    add("mesh of a rounded bar", tessellated_rounded_bar(half, 0.001, 3, 0.075));
+    add("mesh of a rod", tessellated_can(half, 0.075, 16, 1, 1));
+    add("mesh of a fine rod", tessellated_can(half, 0.075, 32, 1, 1));
     for (const auto& [name, body] : bodies) {
       for (const double tilt : {0.0, 0.5, 3.0}) {
         for (const double gravity : {0.0, kGravity})

@@ -109,6 +109,21 @@ inline TriangleMesh tessellated_ball(double radius, int k) {
   });
 }
 
+/// A square bar along z whose edges are rounded with k facets each.
+inline TriangleMesh tessellated_rounded_bar(double half, double rounding, int k, double half_length) {
+  const int around = 4 * (k + 1);
+  return patchwork(around, 3, [&](double u, double v) -> Vector3 {
+    const int i = int(std::lround(u * around)) % around, row = int(std::lround(3.0 * v));
+    const int quarter = i / (k + 1);
+    const double a = 0.5 * M_PI * (quarter + double(i % (k + 1)) / k),
+                 z = row < 2 ? -half_length : half_length;
+    if (row == 0 || row == 3) return {0.0, 0.0, z};
+    const double x = quarter == 0 || quarter == 3 ? 1.0 : -1.0, y = quarter < 2 ? 1.0 : -1.0;
+    return {x * (half - rounding) + rounding * std::cos(a), y * (half - rounding) + rounding * std::sin(a),
+            z};
+  });
+}
+
 /// Of 4 k^2 triangles, about z.
 inline TriangleMesh tessellated_ring(double radius, double tube, int k) {
   return patchwork(2 * k, k, [&](double u, double v) -> Vector3 {
