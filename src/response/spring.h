@@ -110,8 +110,8 @@ inline void Spring::compress(double deep, double& pressed, double& steepness) co
 // continuous at first touch. It is clamped, so it never pulls. It acts during separation only, and is
 // quadratic, so its slope is zero at rest.
 //
-// All springs look ahead by tau instead of h. The excess over h is a dashpot in parallel with each spring
-// (Kelvin and Voigt; kRelaxation).
+// All springs look ahead by tau, at least h: a dashpot k tau in parallel with each spring (Kelvin and Voigt;
+// kRelaxation).
 //
 // Newton's method needs the slopes by the velocity of 2, where u = u_1 - u_2:
 //

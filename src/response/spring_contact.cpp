@@ -12,11 +12,12 @@ namespace {
 /// Relaxation time of the contact's damping: a spring with a dashpot in parallel (Kelvin-Voigt) looks ahead
 /// by it [s].
 ///
-/// Backward Euler solves k (q + h q') at the end of the step. About the middle of the step, q + h/2 q', that
-/// is the spring and a dashpot k h/2. With e = h + max(0, tau - h/2) in place of h the dashpot is k (e - h/2)
-/// = k tau at every step up to 2 tau = 10 ms. So a held object comes to rest equally fast at all these steps.
-/// At longer steps the integrator alone damps more, which cannot be reduced.
-constexpr double kRelaxation = 0.005;
+/// Backward Euler solves k (q + h q') at the end of the step. With q the present place and q' the velocity of
+/// the step, which is centred on its end, k q alone would neither gain nor lose energy (it is the leapfrog):
+/// all of k h q' is a dashpot. With e = max(h, tau) in place of h the dashpot is k tau at every step up to
+/// tau. So a held object comes to rest equally fast at all these steps. At longer ones the integrator alone
+/// damps more, which cannot be reduced.
+constexpr double kRelaxation = 0.0055;
 
 /// Lever arm of the tangential springs of a fingertip's contact patch, by which they resist spin about the
 /// normal [m].
@@ -121,9 +122,9 @@ void settle_touch(const ContactStep& step, const SpringContact& solved, Touch& t
 
 }  // namespace
 
-// e = h + max(0, tau - h / 2): see kRelaxation.
+// e = max(h, tau): see kRelaxation.
 double look_ahead(double step, bool damping) {
-  return step + (damping ? std::max(0.0, kRelaxation - 0.5 * step) : 0.0);
+  return damping ? std::max(step, kRelaxation) : step;
 }
 
 // The share scales the stiffness, so that N = k share d sums to the phalanx's load, and the strength.
@@ -140,8 +141,6 @@ void make_spring(const ContactStep& step, const ContactConfiguration& configurat
   spring.stretch = reach - n.dot(reach) * n;
   spring.depth = contact.pressed();
   spring.twist = contact.twist;
-  // Kelvin and Voigt's f = k (q + tau q') at the end of the step: by then q has grown by h q', so it is k (q
-  // + (h + tau) q') with the present q and the rate solved for. `ahead` is h + tau.
   spring.ahead = look_ahead(step.step, spring.depth, configuration.damping);
   spring.fade = release_fade(configuration.release_fade);
   const HandStrength& hand = configuration.hand;

@@ -74,6 +74,22 @@ TEST(JointLimit, is_not_reached_by_what_was_at_it_from_the_start) {
   EXPECT_NEAR(position(simulation), -5e-6, 1e-6);
 }
 
+// It rises by 46 um and falls back.
+TEST(JointLimit, is_not_reached_again_by_what_has_hardly_left_it) {
+  Scene scene = rail(9.81);
+  scene.joints[0].lower = 0.0;
+  scene.bodies[0].start_twist.linear = {0, 0, 0.03};
+  Simulation simulation = running(scene);
+  int told = 0;
+  double highest = 0.0;
+  let_go_on(simulation, 0.0, 0.5, 1000.0, [&](const Simulation& now) {
+    told += count(now, EventKind::joint_limit);
+    highest = std::max(highest, position(now));
+  });
+  EXPECT_GT(highest, 3e-5);
+  EXPECT_EQ(told, 0);
+}
+
 /// The fall's speed at the limit is known; within a step of 1 ms gravity adds 0.01 m/s.
 TEST(JointLimit, bounces_by_its_restitution) {
   Scene scene = rail(9.81);

@@ -271,6 +271,50 @@ TEST(GraspAssist, what_is_never_grasped_is_pushed_and_not_carried) {
   EXPECT_LT(simulation.state().bodies[0].pose.position.x(), -0.025);
 }
 
+TEST(GraspAssist, fingers_closed_round_what_is_never_grasped_apply_no_force) {
+  Body cube = testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1);
+  cube.grasp = GraspMode::never;
+  Simulation simulation(testing::scene_of(cube), Configuration());
+  double strongest = 0.0;
+  testing::play(
+      simulation, 0.0, 1.0, 120.0,
+      [](double t) { return reaching(0.5 + 0.5 * testing::smooth(t, 0.4), 0.012, 0.0); },
+      [&](const Simulation& s) {
+        for (const Contact& contact : s.result().contacts)
+          strongest = std::max(strongest, contact.force.norm());
+      });
+  EXPECT_LT(strongest, 1e-3);
+}
+
+// Two fingers of a person's strength, friction 0.3: contact bears up to 18 N, and assist as much again.
+TEST(GraspAssist, bears_no_more_than_twice_what_friction_could) {
+  for (const double mass : {1.0, 6.0}) {
+    Configuration configuration = testing::implicit_configuration();
+    configuration.contact.grasp_assist = true;
+    configuration.contact.hand = HandStrength::of_a_person();
+    configuration.gravity = Vector3(0, 0, -9.81);
+    Body cube = testing::stiff_box(Vector3::Constant(2.0 * kHalf), mass);
+    cube.material.static_friction = cube.material.dynamic_friction = 0.3;
+    Body floor = testing::stiff_box(Vector3(0.2, 0.2, 0.01), 1.0);
+    floor.fixed = true;
+    floor.start.position.z() = -kHalf - 0.005;
+    Scene scene = testing::scene_of(cube);
+    scene.bodies.push_back(floor);
+    complete(scene.bodies.back());
+    Simulation simulation(scene, configuration);
+    testing::play(simulation, 0.0, 1.5, 120.0, [&](double t) {
+      return reaching(std::min(t / 0.2, 1.0), 0.012, 0.0,
+                      0.1 * testing::smooth(t - 0.5, 0.5) * Vector3::UnitZ());
+    });
+    const double lifted = simulation.state().bodies[0].pose.position.z();
+    if (mass < 2.0) {
+      EXPECT_GT(lifted, 0.09);
+    } else {
+      EXPECT_LT(lifted, 0.05);
+    }
+  }
+}
+
 /// Two plates with a hinge between them, closed, as thick together as the cube: the thumb reaches for the
 /// base and the index for the lid.
 Scene book(double friction) {
