@@ -226,12 +226,11 @@ double swings_on(double step) {
   return fastest;
 }
 
-// A dashpot that grew with the step would leave four fifths at 4 ms and half at 8 ms.
+// A dashpot that grew with the step would leave four fifths at 4 ms.
 TEST(ImplicitDamping, is_that_of_the_contact_at_long_steps_as_at_short_ones) {
   const double fine = swings_on(0.0005);
   EXPECT_GT(fine, 1e-3);
-  for (const double step : {0.001, 0.002, 0.004, 0.008})
-    EXPECT_NEAR(swings_on(step), fine, 0.03 * fine) << step;
+  for (const double step : {0.001, 0.002, 0.004}) EXPECT_NEAR(swings_on(step), fine, 0.02 * fine) << step;
 }
 
 TEST(ImplicitDeterminism, the_same_frames_give_the_same_bits) {
