@@ -244,7 +244,9 @@ def main():
     with open(os.path.join(os.path.dirname(options.picture), "demo_summary.txt"), "w", encoding="utf-8") as file:
         file.write(text)
     if not done:
-        print(f"watch_demo: {options.motion} was not seen done within {options.time_limit:.0f} s", file=sys.stderr)
+        missing = ("its picture stayed empty or went on changing" if moment.come
+                   else "rviz did not subscribe to rendered_view" if what() and not rviz_listens() else "it was not seen done")
+        print(f"watch_demo: {options.motion}, {options.time_limit:.0f} s: {missing}", file=sys.stderr)
     return 0 if done else 1
 
 
