@@ -43,8 +43,8 @@ struct AxisSpan {
 };
 AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestFeatures& features);
 
-/// Largest sine of the angle by which a pad at an edge is tilted from a face beside it and still lies on that:
-/// beyond it a deep pad would lie on either face of a right angle.
+/// Largest sine of the angle by which a pad at an edge is tilted from a face beside it and still lies on
+/// that: beyond it a deep pad would lie on either face of a right angle.
 constexpr double kMaxTilt = 0.7;
 
 /// Unit normals of the perpendicular faces of a box or a cylinder that meet where its surface has a normal: a

@@ -30,8 +30,8 @@ class MeshCollider {
   /// point for an edge, a corner, or a face of a curved surface.
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
 
-  /// Part of the axis on which the pad of a capsule lies that touches an edge, a corner or a facet; a point in
-  /// its middle if no face under it is flat enough.
+  /// Part of the axis on which the pad of a capsule lies that touches an edge, a corner or a facet; a point
+  /// in its middle if no face under it is flat enough.
   AxisSpan pad(const Capsule& capsule, const ClosestFeatures& features) const;
 
   const MeshShape& shape() const;

@@ -16,8 +16,8 @@ namespace {
 /// the step, which is centred on its end, k q alone would neither gain nor lose energy (it is the leapfrog):
 /// all of k h q' is a dashpot. With e = max(h, tau) in place of h the dashpot is k tau at every step up to
 /// tau. So a held object comes to rest equally fast at all these steps, and faster at longer ones. With e of
-/// 2/3 h and more it would not, and a shaken cube be 7 times nearer to its path at 8 ms; but then hard contacts
-/// swing to and fro, a door's force is three times as far off, and a cube squeezed at 200 kN/m is lost.
+/// 2/3 h and more it would not, and a shaken cube be 7 times nearer to its path at 8 ms; but then hard
+/// contacts swing to and fro, and a door's force is three times as far off.
 constexpr double kRelaxation = 0.0055;
 
 /// Lever arm of the tangential springs of a fingertip's contact patch, by which they resist spin about the

@@ -22,8 +22,8 @@ inline RenderedCheck render_all(const Scene& scene, const std::vector<HandFrame>
 /// What docs/pipeline.md promises, but for jumps. Bone lengths and joints hold to rounding by
 /// construction.
 inline void expect_one_hand_outside(const RenderedCheck& check, const std::string& what) {
-  constexpr double kRounding = 1e-9;   // [m]
-  constexpr double kAside = 0.005;     // bones are not quite in one plane [rad]
+  constexpr double kRounding = 1e-9;    // [m]
+  constexpr double kAside = 0.005;      // bones are not quite in one plane [rad]
   constexpr double kDeepest = 0.00011;  // the renderer's own bound, and a tenth [m]
   EXPECT_GT(check.frames, 10) << what;
   EXPECT_LE(check.length.value, kRounding) << what << " at " << check.length.time;
