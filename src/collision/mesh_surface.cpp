@@ -10,7 +10,7 @@ constexpr double kFlat = 1e-6;
 /// Smallest distance of a point from a border, as a fraction of the border's length, and of a gap from a
 /// plane, as a fraction of its own length, that counts as clear.
 constexpr double kClear = 1e-5;
-/// Least part of a face that a pad has to lie on, or it ends there [m].
+/// Shortest length over a face that can end a pad [m]; shorter ones are rounding beside an edge.
 constexpr double kSliver = 1e-6;
 
 double nearest_to(const Vector3& place, const Segment& segment) {
@@ -171,14 +171,15 @@ int MeshSurface::face_over(int part, const Vector3& place) const {
   return best;
 }
 
-/// A pad that is pressed in by D at s is pressed in by D - rise elsewhere, where the axis rises above the
-/// faces under it by n.along for each of them. It lies on
+/// The pad has the depth D at the deepest point and D - rise elsewhere. The axis rises above each face under
+/// it by n.along. The length of the pad to each side is
 ///     integral of max(0, 2 (D - rise) / D - 1) ds
-/// to that side: all of a face without tilt, 1 - rise / D of a face that ends with this rise, and a length
-/// that goes over from facet to facet of a curved or rough surface, as its load does. What is tilted by more
-/// than kMaxTilt is another side of the body.
+/// It is the whole face without tilt, and the fraction 1 - rise / D of a face that ends with this rise. It is
+/// continuous from facet to facet of a curved or rough surface. The pad ends at a face that is tilted by more
+/// than kMaxTilt.
 ///
-/// Along a line a little beside the axis: what is symmetric has edges and corners straight under it.
+/// The faces are those under a line slightly beside the axis, because a symmetric body may have edges and
+/// corners exactly under the axis.
 Pad MeshSurface::pad(const Segment& axis, const ClosestFeatures& deepest) const {
   constexpr double kAside = 1e-7, kOnwards = 0.6e-7;  // [m]
   constexpr int kMaxFaces = 64;

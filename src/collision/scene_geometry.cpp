@@ -56,11 +56,10 @@ MeetingFaces meeting_faces(const Shape& shape, const Vector3& normal) {
   return faces;
 }
 
-/// A phalanx that hangs over an edge is nearest to it as soon as it tilts. Its pad still touches the face
-/// beside the edge: of the length over the face the fraction 1 - rise / depth, where the axis rises by `rise`
-/// above the face on it. The load then moves as it does between two points over one face, by the lever rule:
-/// to the middle of the length without tilt, and to the edge as the far end lifts off. It does so for faces
-/// up to kMaxTilt from the normal.
+/// A phalanx that hangs over an edge is nearest to it as soon as it tilts. Its pad still touches the fraction
+/// 1 - rise / depth of the length over the face beside the edge, where the axis rises by `rise` above the
+/// face. The load then moves by the lever rule, as between two points over one face: it is in the middle
+/// without tilt, and at the edge when the far end lifts off. Faces up to kMaxTilt from the normal count.
 AxisSpan PlacedCollider::pad(const Capsule& capsule, const ClosestFeatures& features) const {
   AxisSpan pad = span(capsule, features);
   const Vector3 along = capsule.end - capsule.start;

@@ -15,9 +15,9 @@ namespace {
 /// Backward Euler solves k (q + h q') at the end of the step. With q the present place and q' the velocity of
 /// the step, which is centred on its end, k q alone would neither gain nor lose energy (it is the leapfrog):
 /// all of k h q' is a dashpot. With e = max(h, tau) in place of h the dashpot is k tau at every step up to
-/// tau. So a held object comes to rest equally fast at all these steps, and faster at longer ones. With e of
-/// 2/3 h and more it would not, and a shaken cube be 7 times nearer to its path at 8 ms; but then hard
-/// contacts swing to and fro, and a door's force is three times as far off.
+/// tau. So a held object comes to rest equally fast at all these steps, and faster at longer ones. A smaller
+/// e of 2/3 h would keep the dashpot at 8 ms too, with 1/7 of the error of a shaken cube. But hard contacts
+/// would oscillate, and the error of a door's force would be 3 times as large.
 constexpr double kRelaxation = 0.0055;
 
 /// Lever arm of the tangential springs of a fingertip's contact patch, by which they resist spin about the

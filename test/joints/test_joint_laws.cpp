@@ -80,14 +80,14 @@ TEST(JointLimit, is_not_reached_again_by_what_has_hardly_left_it) {
   scene.joints[0].lower = 0.0;
   scene.bodies[0].start_twist.linear = {0, 0, 0.03};
   Simulation simulation = running(scene);
-  int told = 0;
+  int events = 0;
   double highest = 0.0;
   let_go_on(simulation, 0.0, 0.5, 1000.0, [&](const Simulation& now) {
-    told += count(now, EventKind::joint_limit);
+    events += count(now, EventKind::joint_limit);
     highest = std::max(highest, position(now));
   });
   EXPECT_GT(highest, 3e-5);
-  EXPECT_EQ(told, 0);
+  EXPECT_EQ(events, 0);
 }
 
 /// The fall's speed at the limit is known; within a step of 1 ms gravity adds 0.01 m/s.

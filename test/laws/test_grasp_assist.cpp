@@ -286,8 +286,9 @@ TEST(GraspAssist, fingers_closed_round_what_is_never_grasped_apply_no_force) {
   EXPECT_LT(strongest, 1e-3);
 }
 
-// Two fingers of a person's strength, friction 0.3: contact bears up to 18 N, and assist as much again.
-TEST(GraspAssist, bears_no_more_than_twice_what_friction_could) {
+// Two fingers of a person's strength, friction 0.3: contact supports up to 18 N, and grasp assist as much
+// again.
+TEST(GraspAssist, supports_at_most_twice_the_friction_of_the_fingers) {
   for (const double mass : {1.0, 6.0}) {
     Configuration configuration = testing::implicit_configuration();
     configuration.contact.grasp_assist = true;

@@ -86,8 +86,8 @@ class OperatorHolds : public ::testing::TestWithParam<Reaching> {};
 // Weightless: a few newtons. The most that one means to grip with is 3 N of a beginner, times 1.6 of a strong
 // one, times 1.5 of one who has lost it. Who grips it with less than 0.8 N has not got it.
 TEST_P(OperatorHolds, what_weighs_nothing_with_a_few_newtons) {
-  constexpr int kHolders =
-      20;  // 55 of 60 beginners hold the long cuboid: at least 16 of 20, but once in 50 draws
+  // Of 60 beginners 55 hold the long cuboid: of 20 fewer than 16 do in 1 of 50 draws.
+  constexpr int kHolders = 20;
   Watched watched;
   std::tie(watched.object, watched.group) = GetParam();
   watched.noise = 1.0;
