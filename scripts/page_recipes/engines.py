@@ -17,6 +17,7 @@ def race(name, arguments, figures_of):
         raise MeasurementError('ENGINE_SOURCES is empty; allowed: options of scripts/benchmark, such as --jolt DIR --box3d DIR')
     sys.path.insert(0, os.path.join(PACKAGE, 'benchmark'))
     import race_tables
+    from PIL import Image  # which matplotlib needs, too
     folder = tempfile.mkdtemp()
     try:
         run('benchmark', '--output', folder, *arguments, *sources)
@@ -24,7 +25,9 @@ def race(name, arguments, figures_of):
         versions = race_tables.versions(rows)
         described = race_tables.described(versions, max(row.date for row in rows))
         for chart, image in CHARTS.get(name, {}).items():
-            shutil.copyfile(os.path.join(folder, chart + '.png'), os.path.join(PACKAGE, 'docs', 'images', image + '.png'))
+            with Image.open(os.path.join(folder, chart + '.png')) as drawn:  # 64 colours take a quarter of the bytes
+                drawn.convert('RGB').quantize(64, dither=0).save(
+                    os.path.join(PACKAGE, 'docs', 'images', image + '.png'), optimize=True)
         return dict(figures_of(race_tables, rows, times), versions=described), versions
     finally:
         shutil.rmtree(folder)
