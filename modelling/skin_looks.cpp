@@ -8,10 +8,10 @@ namespace {
 
 const Rgb kBack(0.91f, 0.73f, 0.62f), kPalmar(0.95f, 0.74f, 0.65f), kBlush(0.93f, 0.62f, 0.53f),
     kNail(1.0f, 0.80f, 0.76f), kNailFold(0.66f, 0.43f, 0.36f);
-const Rgb kCreaseTint(0.85f, 0.74f, 0.70f);  // of the skin's colour, in the deepest fold
+const Rgb kCreaseTint(0.89f, 0.81f, 0.78f);  // of the skin's colour, in the deepest fold
 constexpr float kPalmCreases = 0.5f;  // of that: lines across the palm's wide triangles would look torn
 const Rgb kSleeve(0.36f, 0.44f, 0.55f);
-constexpr float kSleeveShade = 0.5f, kOpeningShade = 0.75f;  // what is taken of the light
+constexpr float kSleeveShade = 0.4f;            // what it takes of the light beside it
 constexpr double kRound = 0.85;                 // how far round the finger half a nail goes [rad]
 constexpr double kBegins = 0.42, kPast = 0.72;  // along the bone, of its length; past its end, in its radii
 
@@ -71,7 +71,7 @@ SkinModel::Look skin_look(const Vector3& vertex, bool creases) {
     colour *= 1.0f - deep * static_cast<float>(skin_crease(vertex)) * (1.0f - kCreaseTint);
   }
   const auto shade = static_cast<float>(sleeve.shade);
-  if (sleeve.covers) return {kSleeve * (1.0f - kOpeningShade * shade), most};
+  if (sleeve.covers) return {kSleeve, most};
   return {with_nail(vertex, colour) * (1.0f - kSleeveShade * shade), most};
 }
 

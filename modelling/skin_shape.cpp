@@ -19,9 +19,9 @@ constexpr double kReliefZone = 0.003;                             // about the s
 constexpr double kForearmWidth = 0.0250, kForearmThickness = 0.0138;  // half of each [m]
 constexpr double kWristLength = 0.036;                                // of the forearm in the palm [m]
 constexpr double kForearmEnd = -0.030;                                // x of the rest hand, in the sleeve [m]
-constexpr double kSleeveEnd = -0.0438;                                // x of its opening [m]
-constexpr double kSleeveThickness = 0.0034, kOpeningDepth = 0.006;    // [m]
-constexpr double kSleeveEdge = 0.0016;                                // over which its edges are round [m]
+constexpr double kSleeveEnd = -0.0438;                                // x of its end [m]
+constexpr double kSleeveThickness = 0.0034;                           // [m]
+constexpr double kHemRound = 0.0016, kEndRound = 0.008;               // over which its edges are round [m]
 constexpr double kBare = 0.0008;  // above the hand, up to which the sleeve's hem has the skin's colour [m]
 
 /// min - w h^2 / 4 with h = 1 - |a - b| / w, where that is > 0: smooth where the two meet, deepest there by w
@@ -144,19 +144,11 @@ double smooth_max(double a, double b, double width) {
   return -smooth_min(-a, -b, width);
 }
 
-/// Half an ellipsoid, hollowed out of the sleeve's end.
-double opening_distance(const Vector3& p) {
-  const Vector3 q((p.x() - kSleeveEnd) * kForearmThickness / kOpeningDepth,
-                  p.y() * kForearmThickness / kForearmWidth, p.z() - 0.001);
-  return q.norm() - kForearmThickness;
-}
-
 /// An elliptic cylinder about the forearm.
 double sleeve_distance(const Vector3& p) {
   constexpr double kUncut = 1.0;  // x of an end that is cut off [m]
-  const double beyond = std::max(p.x() - kSleeveHem, kSleeveEnd - p.x());
-  const double whole = smooth_max(forearm_distance(p, kUncut, kSleeveThickness), beyond, kSleeveEdge);
-  return smooth_max(whole, -opening_distance(p), kSleeveEdge);
+  const double side = forearm_distance(p, kUncut, kSleeveThickness);
+  return smooth_max(smooth_max(side, p.x() - kSleeveHem, kHemRound), kSleeveEnd - p.x(), kEndRound);
 }
 
 /// Parts are united in a fixed order.
@@ -174,9 +166,9 @@ double hand_distance(const Vector3& point) {
 }  // namespace
 
 SkinSleeve skin_sleeve(const Vector3& point) {
-  constexpr double kShade = 0.004;  // width of the sleeve's shade on the skin [m]
+  constexpr double kShade = 0.008;  // width of the sleeve's shade on the skin [m]
   if (hand_distance(point) < kBare) return {false, smooth_step(kShade, 0.0, sleeve_distance(point))};
-  return {true, smooth_step(0.0025, 0.0005, opening_distance(point))};
+  return {true, 0.0};
 }
 
 Vector3 onto_hem(const Vector3& point, double margin) {

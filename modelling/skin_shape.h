@@ -13,8 +13,7 @@ double detailed_skin_distance(const Vector3& point);
 
 constexpr double kSleeveHem = -0.016;  ///< x of the rest hand, from where a sleeve covers the forearm [m]
 
-/// Whether a place on the skin is the sleeve, and how far it is in the shade of the sleeve's edge or in its
-/// opening, 0 to 1.
+/// Whether a place on the skin is the sleeve, and how far it is in the shade of the sleeve's hem, 0 to 1.
 struct SkinSleeve {
   bool covers;
   double shade;
