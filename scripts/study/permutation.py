@@ -1,5 +1,7 @@
 """Tests that are right for any distribution: what could as well have been otherwise is counted.
 
+The bootstrap is our own: scipy.stats.bootstrap came with scipy 1.7, and Debian 11 has 1.6.0.
+
 All arrangements are gone through where they are few, else seeded random ones are drawn, so that the same data give the
 same p-value. Whoever is exchanged keeps what is missing.
 """
