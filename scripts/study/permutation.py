@@ -1,7 +1,5 @@
 """Tests that are right for any distribution: what could as well have been otherwise is counted.
 
-The bootstrap is our own: scipy.stats.bootstrap came with scipy 1.7, and Debian 11 has 1.6.0.
-
 All arrangements are gone through where they are few, else seeded random ones are drawn, so that the same data give the
 same p-value. Whoever is exchanged keeps what is missing.
 """
@@ -13,7 +11,7 @@ import numpy as np
 
 MOST_EXACT = 40000  # arrangements
 DRAWN = 9999  # with the observed one: p is a multiple of 1 / 10000
-BOOTSTRAPPED = 10000
+BOOTSTRAPPED = 10000  # by code of our own: scipy.stats.bootstrap came with scipy 1.7, and Debian 11 has 1.6.0
 SEED = 20231
 CLOSE = 1e-9  # statistics that differ by rounding alone are as extreme as each other
 
