@@ -24,12 +24,15 @@ from screenshot import FONT
 from watch_demo import join_master
 
 TOPICS = list(POSES) + ["training/markers"]
-Scene = collections.namedtuple("Scene", "caption launch view lead")  # lead: seconds before the moment that it is about
+# `lead`: seconds before the moment that it is about, negative: after; `speed`: 0.1 is ten times slower; `eye`: overrides the view.
+Scene = collections.namedtuple("Scene", "caption launch view lead speed eye", defaults=(1.0, {}))
 DEMO = ["demo.launch", "rviz:=false"]
 SCENES = {
     "grasp": Scene("grasp, carry, let go", DEMO + ["motion:=grasp_cube"], "interaction", 0.0),
     "catch": Scene("catch", DEMO + ["motion:=catch_ball"], "catch", 0.0),
-    "slap": Scene("slap", DEMO + ["motion:=slap"], "interaction", 0.0),
+    # From the palm's side. The ring of an impact lasts 0.15 s: one picture at full speed.
+    "slap": Scene("slap, fifteen times slower", DEMO + ["motion:=slap"], "interaction", -1.12, 1.0 / 15.0,
+                  {"Yaw": 3.5, "Pitch": 0.2, "Distance": 0.48}),
     "bar": Scene("pinch a slender bar", DEMO + ["motion:=pinch_long"], "interaction", 0.0),
     "training": Scene("training", ["training.launch", "rviz:=false", "record:=false", "participant:=P01", "hands:=operator"],
                       "training", 3.0),
@@ -130,15 +133,16 @@ def record(scene, seconds, folder):
     return begin, recorder.shown(begin + seconds)
 
 
-def write_config(view, focus, size, file):
+def write_config(scene, focus, size, file):
     width, height = (2 * int(number) for number in size.split("x"))
-    config = picture_view(view, width, height)
+    config = picture_view(scene.view, width, height)
     for display in config["Visualization Manager"]["Displays"]:
         if display["Name"] == "Hands and objects":
             display["Text"] = False
     eye = config["Visualization Manager"]["Views"]["Current"]
-    if view != "training":
+    if scene.view != "training":
         eye["Distance"] *= WIDER
+    eye.update(scene.eye)
     if focus:
         eye["Focal Point"], eye["Distance"] = focus
     yaml.safe_dump(config, file)
@@ -167,7 +171,7 @@ def draw(scene, begin, shown, options, folder, focus=None):
     files = []
     before, now = (os.path.join(folder, name) for name in ("before.ppm", "now.ppm"))
     with Stage(TOPICS) as stage, tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config:
-        eye, aspect = write_config(scene.view, focus, options.size, config)
+        eye, aspect = write_config(scene, focus, options.size, config)
         rviz = subprocess.Popen(["rosrun", "rviz", "rviz", "--fullscreen", "-d", config.name],
                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
@@ -175,7 +179,7 @@ def draw(scene, begin, shown, options, folder, focus=None):
             stage.clear()
             since = 0.0
             for picture in range(int(options.seconds * options.rate)):
-                until = begin + picture / options.rate
+                until = begin + scene.speed * picture / options.rate
                 stage.show([entry for entry in shown if since < entry[0] <= until])
                 stage.tick(picture, eye, aspect)
                 since = until
@@ -219,7 +223,7 @@ def film_of_scenes(options, parent):
     for name in options.scenes:
         folder = os.path.join(parent, name)
         os.mkdir(folder)
-        begin, shown = record(SCENES[name], options.seconds, folder)
+        begin, shown = record(SCENES[name], SCENES[name].speed * options.seconds, folder)
         files += draw(SCENES[name], begin, shown, options, folder)
         print("film: %s, %d pictures" % (name, len(files)), flush=True)
     return files

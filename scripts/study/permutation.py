@@ -11,7 +11,7 @@ import numpy as np
 
 MOST_EXACT = 40000  # arrangements
 DRAWN = 9999  # with the observed one: p is a multiple of 1 / 10000
-BOOTSTRAPPED = 10000
+BOOTSTRAPPED = 10000  # by code of our own: scipy.stats.bootstrap came with scipy 1.7, and Debian 11 has 1.6.0
 SEED = 20231
 CLOSE = 1e-9  # statistics that differ by rounding alone are as extreme as each other
 

@@ -20,6 +20,11 @@ def last_line_of(script, *arguments):
 
 
 class MistakesTest(unittest.TestCase):
+    def test_a_plugin_that_is_not_built_is_answered_with_the_package_that_it_needs(self):
+        status, line, told = last_line_of("run_when", "plugin", "true")
+        self.assertEqual(status, 1, told)
+        self.assertIn("librviz-dev", line)
+
     def test_a_name_that_is_not_known_is_answered_with_those_that_are(self):
         for script, arguments, wrong, allowed in (
                 ("demo", ("--motion", "jump"), "jump", "grasp_cube"),
