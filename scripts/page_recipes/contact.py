@@ -1,19 +1,15 @@
 """Refinements of contact: benefit, cost, and tiers of geometry; speed of a body that a hand hits."""
 import collections
 import re
-import tempfile
 
-from .measuring import CORE, Recipe, draw, run
+from .measuring import CORE, Recipe, draw_printed, run
 
 
 def contact():
     benefits, costs = run('ablation').split('\n\nA step of scene (a): ')
     instructions, costs = costs.split(' instructions', 1)
     costs = re.findall(r'^\| (`\w+`) \| .*\(([-+][\d.]+) %\) \|', costs, re.MULTILINE)
-    with tempfile.NamedTemporaryFile('w', suffix='.csv') as speeds:
-        speeds.write(run('speed_against_mass'))
-        speeds.flush()
-        draw('speed_against_mass', 'plot_speed_against_mass.py', speeds.name)
+    draw_printed('speed_against_mass', 'plot_speed_against_mass.py', run('speed_against_mass'))
     tiers = collections.OrderedDict()
     for line in run('geometry_tiers').split('\n'):
         found = re.match(r'(.{18}) +([-\d.]+) +([-\d.]+) +([-\d.]+) +([-\d.]+)$', line)

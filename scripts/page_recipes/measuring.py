@@ -12,6 +12,7 @@ from page_figures import PACKAGE, chart_path
 # `time`: of one core; `sources`: what the figures depend on, files and folders; `measure`: gives ({key: text}, {engine: version}) and
 # draws `charts`, names of images.
 Recipe = collections.namedtuple('Recipe', 'time sources measure charts', defaults=[()])
+sys.path.insert(0, os.path.join(PACKAGE, 'benchmark'))  # tables and charts
 PROGRAMS = os.path.join(PACKAGE, 'devel', 'lib', 'mr_hand_interaction')
 LAWS = ['src/collision', 'src/response', 'src/simulation', 'src/integration']
 CORE = LAWS + ['src/tracking', 'config/default.yaml']
@@ -46,6 +47,14 @@ def draw(chart, script, source):
         picture = os.path.join(folder, 'chart.png')
         _done([sys.executable, os.path.join(PACKAGE, 'benchmark', script), source, picture])
         keep_chart(chart, picture)
+
+
+def draw_printed(chart, script, printed):
+    """Draws what a program printed."""
+    with tempfile.NamedTemporaryFile('w', suffix='.csv', encoding='utf-8') as file:
+        file.write(printed)
+        file.flush()
+        draw(chart, script, file.name)
 
 
 def keep_chart(chart, picture):

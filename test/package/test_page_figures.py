@@ -11,7 +11,7 @@ PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file
 sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
 import page_figures  # noqa: E402
 import page_recipes  # noqa: E402
-from page_recipes import grasps, people, stability  # noqa: E402
+from page_recipes import engines, grasps, people, stability  # noqa: E402
 
 
 class Pages(unittest.TestCase):
@@ -152,6 +152,15 @@ class TestPeople(unittest.TestCase):
             "widest": "64 to 66 %", "grip": "2.6 to 3.2 N", "correlation": "r = 0.93 to 0.98",
             "margin": "91 % at 0.5 N of load, 63 % at 7 N",
             "leap": "after 0.10 s; the reach takes 0.12 s longer (12 cm aside), 0.24 s (further)"})
+
+
+class TestCutShort(unittest.TestCase):
+    def test_small_heaps_are_told_apart_from_larger_ones_and_from_blocks_at_rest(self):
+        rows = [dict(scene=scene, bodies_to=str(bodies), relative=str(relative), off_m_s=str(off)) for scene, bodies, relative, off in (
+            ("heap", 8, 1e-5, 1e-6), ("heap", 16, 0.006, 1e-3), ("heap", 32, 0.21, 0.1), ("heap", 64, 0.25, 0.2),
+            ("block", 16, 0.5, 2e-7), ("block", 64, 0.5, 1e-6))]
+        self.assertEqual(engines.cut_short_figures(rows)["error"], "at most 1e-06 m/s at rest, 0.6 % of the change of velocity where "
+                         "up to 16 bodies land on each other, and 21 to 25 % where more do")
 
 
 class TestStability(unittest.TestCase):
