@@ -51,9 +51,9 @@ def cut_short():
 def cut_short_figures(rows):
     heaps = {int(row['bodies_to']): 100 * float(row['relative']) for row in rows if row['scene'] == 'heap'}
     large = [share for bodies, share in heaps.items() if bodies > 16]
-    return {'error': 'at most %.0e m/s at rest, %.1f %% of the change of velocity where up to 16 bodies land on each other, and '
-                     '%.0f to %.0f %% where more do' % (max(float(row['off_m_s']) for row in rows if row['scene'] == 'block'),
-                                                        heaps[16], min(large), max(large))}
+    at_rest = '%.0e' % max(float(row['off_m_s']) for row in rows if row['scene'] == 'block')
+    return {'error': 'at most %s m/s at rest, %.1f %% of the change of velocity where up to 16 bodies land on each other, and '
+                     '%.0f to %.0f %% where more do' % (at_rest.replace('e-0', 'e-'), heaps[16], min(large), max(large))}
 
 
 RECIPES = {

@@ -159,7 +159,7 @@ class TestCutShort(unittest.TestCase):
         rows = [dict(scene=scene, bodies_to=str(bodies), relative=str(relative), off_m_s=str(off)) for scene, bodies, relative, off in (
             ("heap", 8, 1e-5, 1e-6), ("heap", 16, 0.006, 1e-3), ("heap", 32, 0.21, 0.1), ("heap", 64, 0.25, 0.2),
             ("block", 16, 0.5, 2e-7), ("block", 64, 0.5, 1e-6))]
-        self.assertEqual(engines.cut_short_figures(rows)["error"], "at most 1e-06 m/s at rest, 0.6 % of the change of velocity where "
+        self.assertEqual(engines.cut_short_figures(rows)["error"], "at most 1e-6 m/s at rest, 0.6 % of the change of velocity where "
                          "up to 16 bodies land on each other, and 21 to 25 % where more do")
 
 
