@@ -172,13 +172,12 @@ void add_crowd_scenes(std::vector<ScenePlan>& scenes) {
     return [count, edge](bool) { return std::make_unique<Heap>(count, edge, 2.5); };
   };
   add("crowd_heap_8", heap(8, 0.016));
-  add("crowd_heap_12", heap(12, 0.016));
   add("crowd_heap_50", heap(50, 0.04));
   add("crowd_push_50", [](bool) { return std::make_unique<Push>(50); });
   const auto block = [](int count, double gap) {
     return [count, gap](bool) { return std::make_unique<Block>(count, gap); };
   };
-  for (const int count : {50, 200, 1000}) add("crowd_block_" + std::to_string(count), block(count, 2e-5));
+  for (const int count : {50, 1000}) add("crowd_block_" + std::to_string(count), block(count, 2e-5));
   add("crowd_close_200", block(200, 5e-6));
   for (const int count : {50, 200}) add("crowd_flush_" + std::to_string(count), block(count, 0.0));
   add("crowd_wall_48", [](bool) { return std::make_unique<Wall>(); });
