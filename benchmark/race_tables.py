@@ -39,9 +39,8 @@ MESHES = [
 ]
 JOINTS = [
     Line('door', 'door_place', STEP, 'mm'),
-    Line('the same, one step per frame of 8.33 ms', 'door_place', FRAME, 'mm'),
+    Line('door, 8.33 ms', 'door_place', FRAME, 'mm'),
     Line('valve', 'valve_place', STEP, 'mm'),
-    Line('the same, one step per frame of 8.33 ms', 'valve_place', FRAME, 'mm'),
 ]
 CROWD_ENGINES = (plot.OURS, 'jolt', 'box3d', 'ode', 'mujoco')
 STIFF = 'implicit; stiffness 2000000'
