@@ -32,14 +32,13 @@ def draw(axes, scenes, middle, high, label):
     for scene, rows in scenes.items():
         colour, marker, name = STYLES[scene]
         bodies = [row['bodies_to'] for row in rows]
-        axes.plot(bodies, [row[middle] for row in rows], color=colour, marker=marker)
+        axes.plot(bodies, [row[middle] for row in rows], color=colour, marker=marker, label=name)
         axes.plot(bodies, [row[high] for row in rows], color=colour, linestyle=':')
-        axes.annotate(name, (bodies[-1], rows[-1][middle]), xytext=(-4, -14), textcoords='offset points', ha='right',
-                      color=colour)
     axes.set_xscale('log', base=2)
     axes.set_yscale('log')
     axes.set_xlabel('bodies of the crowd, at most')
     axes.set_title(label)
+    axes.legend(loc='lower right')
     axes.grid(True, alpha=0.3)
 
 

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """Draws real_grasps.png beside a real_grasps.csv (and the real_grasps_arctic.csv beside it, if there is one): the share
-of bodies that are still in the hand as it opens against how hard its fingers press."""
+of bodies that are still in the hand as it opens against how hard its fingers press. engines.csv has the versions."""
 
+import collections
 import csv
 import os
 import sys
+
+import plot_speed_accuracy as race
 
 try:
     import matplotlib
@@ -14,7 +17,6 @@ except ImportError:
     sys.exit('plot_real_grasps.py: needs matplotlib (Debian: python3-matplotlib)')
 
 # Okabe and Ito's palette, told apart by the colour-blind; markers differ too.
-OURS = 'mr_hand_interaction'
 STYLES = {
     'implicit': ('#D55E00', 'o'), "implicit, the paper's hand": ('#882255', 'p'), 'soft_pad': ('#E69F00', 'h'), 'virtual_spring': ('#CC79A7', 'v'),
     'seed': ('#999999', '<'), 'penetration': ('#666666', '>'),
@@ -26,6 +28,7 @@ TITLES = {
     'grab_sphere60': 'grab: sphere 60 mm', 'grab_sphere80': 'grab: sphere 80 mm', 'grab_cube60': 'grab: cube 60 mm',
     'grab_cube80': 'grab: cube 80 mm', 'arctic': 'captured objects, 1 g',
 }
+Engine = collections.namedtuple('Engine', 'engine version date')
 LEAST_FORCE = 0.1  # [N]; where forces that no engine tells, or none, are drawn
 
 
@@ -36,9 +39,13 @@ def read(path):
         return list(csv.DictReader(file))
 
 
+def read_engines(folder):
+    return [Engine(**row) for row in read(os.path.join(folder, 'engines.csv'))]
+
+
 def family(row):
     """What shares a colour and a line: one of our models, or an engine."""
-    return row['setting'].split(';')[0] if row['engine'] == OURS else row['engine']
+    return row['setting'].split(';')[0] if row['engine'] == race.OURS else row['engine']
 
 
 def points(rows, share, low, high):
@@ -70,7 +77,7 @@ def draw(axes, families, title):
         axes.errorbar(forces, [100 * s for s in shares],
                       yerr=[[100 * max(0.0, s - l) for s, l in zip(shares, lows)], [100 * max(0.0, h - s) for s, h in zip(shares, highs)]],
                       color=colour, marker=marker, markersize=5, linewidth=1.2 if ours else 0, elinewidth=0.6, capsize=2,
-                      label=name)
+                      label=race.label_of_engine(name))
     axes.set_xscale('log')
     axes.set_ylim(-3, 103)
     axes.set_title(title, fontsize=9)
@@ -100,8 +107,11 @@ def main():
         axes.set_ylabel('in the hand as it opens [%]')
     for axes in grid[-1]:
         axes.set_xlabel('force of a finger, p90 [N]')
-    figure.legend(handles.values(), handles.keys(), loc='lower center', ncol=9, fontsize=8, frameon=False)
-    figure.tight_layout(rect=(0, 0.06, 1, 1))
+    figure.legend(handles.values(), handles.keys(), loc='lower center', ncol=10, fontsize=8, frameon=False, bbox_to_anchor=(0.5, 0.03))
+    engines = read_engines(os.path.dirname(sys.argv[1]))
+    if engines:
+        figure.text(0.01, 0.01, race.footnote(engines), fontsize=8, color='#555555')
+    figure.tight_layout(rect=(0, 0.09, 1, 1))
     figure.savefig(sys.argv[1][:-4] + '.png', dpi=110)
 
 

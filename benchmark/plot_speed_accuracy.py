@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the charts of a speed_accuracy.csv (and of the step_times.csv beside it): summary.png, the panels that carry the
-message; all.png, the same of every scene; per scene the error against the time per step and against the real-time
-factor; and cost against the number of objects and contacts."""
+message; all.png, the same of every scene; crowds.png; per scene the error against the time per step and against the
+real-time factor; and cost against the number of objects and contacts."""
 
 import collections
 import csv
@@ -33,8 +33,8 @@ STYLES = {
     'physx': ('#76B900', '*'),
 }
 OTHER = ('#999999', '.')
-LABELS = {'mr_hand_interaction': "ours, paper's hand, step", 'mr_hand_interaction, shipped': 'ours, shipped hand, whole frame', 'bullet_f32': 'Bullet f32', 'bullet_f64': 'Bullet f64', 'ode': 'ODE',
-          'dart': 'DART', 'simbody': 'Simbody', 'mujoco': 'MuJoCo', 'jolt': 'Jolt', 'box3d': 'Box3D', 'physx': 'PhysX'}
+LABELS = {'mr_hand_interaction': "ours, paper's hand, step", 'mr_hand_interaction, shipped': 'ours, shipped hand, whole frame',
+          'bullet_f32': 'Bullet f32', 'bullet_f64': 'Bullet f64', 'ode': 'ODE', 'dart': 'DART', 'simbody': 'Simbody', 'mujoco': 'MuJoCo', 'jolt': 'Jolt', 'box3d': 'Box3D', 'physx': 'PhysX'}
 LINES = ['-', '--', '-.', ':', (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (7, 2)), (0, (3, 1, 1, 1))]
 OURS, SHIPPED = 'mr_hand_interaction', 'mr_hand_interaction, shipped'
 COST_PREFIX, CROWD_PREFIX = 'cost_', 'crowd_'
@@ -42,7 +42,12 @@ COST_PREFIX, CROWD_PREFIX = 'cost_', 'crowd_'
 PANELS = [('pinch_swing', 'a pinched cube, swung: displacement'), ('pinch_noisy', 'the same, noisy hand of 120 Hz'),
           ('pinch_noisy_1khz', 'the same, noisy hand of 1 kHz'), ('slap_speed', 'slap: speed'), ('free_rotation_energy', 'free rotation: energy'),
           ('recording', "a person's recorded hand: displacement"), ('scripted_hand', 'a scripted, noisy hand: displacement')]
-UNMOVABLE = ('slap_speed', 'recording', 'scripted_hand')  # the reference is a hand that nothing moves: not the shipped one
+UNMOVABLE = ('slap_speed', 'slap_spin', 'recording', 'scripted_hand')  # the reference is a hand that nothing moves: not the shipped one
+CROWDS = [('8 dice dropped', 'crowd_heap_8'), ('50 cubes dropped', 'crowd_heap_50'),
+          ('a wall of 48 bricks falls', 'crowd_wall_48'), ('a hand pushes 50 blocks', 'crowd_push_50'),
+          ('50 cubes at rest, gaps of 20 µm', 'crowd_block_50'), ('50 of them, no gaps', 'crowd_flush_50'),
+          ('200 of them, gaps of 5 µm', 'crowd_close_200'), ('200 of them, no gaps', 'crowd_flush_200'),
+          ('1000 of them, gaps of 20 µm', 'crowd_block_1000')]
 SMALLEST_CROWD = 1e-6  # [mm]
 SMALLEST = 1e-12  # errors below are rounding; a logarithmic axis has no zero
 
@@ -128,6 +133,12 @@ def draw_failed(axes, rows, x_of):
                       transform=axes.get_xaxis_transform())
 
 
+def plain(axes):
+    axes.grid(True, which='major', color='0.9')
+    for side in ('top', 'right'):
+        axes.spines[side].set_visible(False)
+
+
 def finish(axes, unit, x_label):
     axes.set_xscale('log')
     axes.set_yscale('log')
@@ -139,9 +150,7 @@ def finish(axes, unit, x_label):
     if high < 20.0 * low:  # no decades to write
         axes.yaxis.set_minor_formatter(matplotlib.ticker.FormatStrFormatter('%g'))
         axes.yaxis.set_major_formatter(matplotlib.ticker.FormatStrFormatter('%g'))
-    axes.grid(True, which='major', color='0.9')
-    for side in ('top', 'right'):
-        axes.spines[side].set_visible(False)
+    plain(axes)
 
 
 def draw_curves(axes, rows, x_of):
@@ -195,40 +204,20 @@ def pareto(points):
     return front
 
 
-def draw_front(axes, rows, label):
+def style_of(engine):
+    colour, marker = STYLES.get(engine, OTHER)
+    ours = engine in (OURS, SHIPPED)
+    return {'color': colour, 'marker': marker, 'markersize': 4.5, 'linewidth': 2.2 if ours else 1.4, 'zorder': 3 if ours else 2}
+
+
+def draw_front(axes, rows):
     """The best of each engine over its settings and steps: error against computing time per simulated second."""
-    floor, labels = floor_of(rows), []
+    floor = floor_of(rows)
     for engine, of_engine in by_curve(rows).items():
-        colour, marker = STYLES.get(engine, OTHER)
         front = pareto([(r.time / r.step * 1e-3, max(r.error, floor)) for r in of_engine if not r.failed and r.time > 0])
-        if not front:
-            continue
-        x, y = zip(*front)
-        axes.plot(x, y, color=colour, marker=marker, markersize=4.5, linewidth=2.2 if engine in (OURS, SHIPPED) else 1.4,
-                  drawstyle='steps-post', zorder=3 if engine in (OURS, SHIPPED) else 2)
-        labels.append((x[-1], y[-1], label_of(engine), colour))
+        if front:
+            axes.plot(*zip(*front), drawstyle='steps-post', label=label_of(engine), **style_of(engine))
     finish(axes, rows[0].unit, 'ms per simulated second')
-    if label is label_at_right:  # room for the names
-        low, high = axes.get_xlim()
-        axes.set_xlim(low, high * (high / low) ** 0.3)
-    label(axes, labels)
-
-
-def label_beside_points(axes, labels):
-    for x, y, text, colour in labels:
-        axes.annotate(text, (x, y), xytext=(3, 3), textcoords='offset points', fontsize=7, color=colour)
-
-
-def label_at_right(axes, labels):
-    """Names in a column at the panel's right edge, in the order of their curves' ends."""
-    axes.get_xlim(), axes.get_ylim()  # settles the limits
-    to_axes = axes.transAxes.inverted()
-    labels = sorted(labels, key=lambda one: axes.transData.transform(one[:2])[1])
-    wanted = [to_axes.transform(axes.transData.transform(one[:2]))[1] for one in labels]
-    for (x, y, text, colour), place in zip(labels, spread(wanted, 0.062, 0.03, 0.98)):
-        axes.annotate(text, xy=(x, y), xytext=(0.985, place), xycoords='data', textcoords='axes fraction', fontsize=9,
-                      color=colour, ha='right', va='center', weight='bold' if text.startswith('ours') else 'normal',
-                      arrowprops={'arrowstyle': '-', 'color': colour, 'lw': 0.5, 'alpha': 0.5, 'shrinkB': 2})
 
 
 def read_times(path):
@@ -262,81 +251,69 @@ def crowd_error(rows, scene, engine, setting):
     return next(r.error for r in rows if r.engine == engine and r.setting == setting and r.scene in (scene, scene + '_sunk'))
 
 
-def draw_crowds(axes, times, rows, value_of, unit):
+def draw_crowd_panel(axes, times, rows, value_of, unit):
     """A curve per engine over the crowds, at its best setting in each."""
-    scenes, labels = list(collections.OrderedDict.fromkeys(scene for scene, _, _ in times)), []
+    crowds = [(scene, label) for label, scene in CROWDS if any(scene == ran for ran, _, _ in times)]
     for engine in collections.OrderedDict.fromkeys(engine for _, engine, _ in times):
-        colour, marker = STYLES.get(engine, OTHER)
-        best = [(i, scene, best_setting(times, rows, scene, engine)) for i, scene in enumerate(scenes)]
+        best = [(i, scene, best_setting(times, rows, scene, engine)) for i, (scene, _) in enumerate(crowds)]
         points = [(i, value_of(scene, engine, setting)) for i, scene, setting in best if setting is not None]
-        if not points:
-            continue
-        places, y = zip(*points)
-        axes.plot(places, y, color=colour, marker=marker, markersize=5, linewidth=1.4 if engine != OURS else 2.2)
-        labels.append((places[-1], y[-1], label_of_engine(engine), colour))
+        if points:
+            axes.plot(*zip(*points), **style_of(engine), label=label_of_engine(engine))
     axes.set_yscale('log')
-    axes.set_xlim(-0.3, len(scenes) + 1.2)
-    axes.set_xticks(range(len(scenes)))
-    axes.set_xticklabels([scene[len(CROWD_PREFIX):].replace('_', ' ') for scene in scenes], rotation=35, ha='right')
+    axes.set_xticks(range(len(crowds)))
+    axes.set_xticklabels([label for _, label in crowds], rotation=35, ha='right', fontsize=8)
     axes.set_ylabel(unit)
-    axes.grid(True, which='major', color='0.9')
-    for side in ('top', 'right'):
-        axes.spines[side].set_visible(False)
-    label_at_right(axes, labels)
+    plain(axes)
 
 
-def draw_summary(scenes, times, folder):
-    """The panels of PANELS that were run, and the crowds' cost and error."""
-    rows = [r for of_scene in scenes.values() for r in of_scene]
-    panels = [(title, lambda axes, scene=scene: draw_front(axes, [
-        r for r in scenes[scene] if scene not in UNMOVABLE or 'shipped hand' not in r.setting], label_at_right))
-              for scene, title in PANELS if scene in scenes]
-    if times:
-        panels += [('crowds: cost', lambda axes: draw_crowds(
-            axes, times, rows, lambda *crowd: times[crowd][0], 'mean time per step of 1 ms [µs]')),
-                   ('crowds: depth below the floor, or movement at rest', lambda axes: draw_crowds(
-                       axes, times, rows, lambda *crowd: max(crowd_error(rows, *crowd), SMALLEST_CROWD), 'error [mm]'))]
-    if not panels:
-        return
-    columns = min(2, len(panels))
+def draw_panels(panels, columns, size, heading, rows, file):
+    """Panels (title, function that draws it) of a size [inch] with one legend, and versions and date below."""
     lines = math.ceil(len(panels) / columns)
-    figure, grid = plt.subplots(lines, columns, figsize=(6.0 * columns, 4.4 * lines), dpi=90, squeeze=False)
+    width, height = size[0] * columns, size[1] * lines + 1.3
+    figure, grid = plt.subplots(lines, columns, figsize=(width, height), dpi=80, squeeze=False)
+    legend = collections.OrderedDict()
     for axes in grid.flat[len(panels):]:
         axes.set_visible(False)
-    for axes, (title, draw) in zip(grid.flat, panels):
+    for axes, (name, draw) in zip(grid.flat, panels):
         draw(axes)
-        axes.set_title(title, fontsize=11, loc='left')
-    figure.suptitle('Best of each engine over its settings and step sizes: lower left is better', fontsize=12)
-    note = textwrap.fill(footnote(rows), 72 * columns)
-    figure.text(0.01, 0.005, note, fontsize=8, color='#555555')
-    figure.tight_layout(rect=(0, 0.02 + 0.012 * note.count('\n'), 1, 0.99))
-    figure.savefig(os.path.join(folder, 'summary.png'))
+        axes.set_title(name, fontsize=10, loc='left')
+        for handle, label in zip(*axes.get_legend_handles_labels()):
+            legend.setdefault(label, handle)
+    figure.legend(legend.values(), legend.keys(), loc='upper center', ncol=6, fontsize=9, frameon=False, title=heading)
+    figure.text(0.01, 0.05 / height, textwrap.fill(footnote(rows), int(16 * width)), fontsize=8, color='#555555')
+    figure.tight_layout(rect=(0, 0.4 / height, 1, 1 - 0.85 / height))
+    figure.savefig(file)
     plt.close(figure)
 
 
-def draw_all(scenes, folder):
-    """Every scene's fronts: the appendix."""
-    columns = 5
-    lines = math.ceil(len(scenes) / columns)
-    figure, grid = plt.subplots(lines, columns, figsize=(4.0 * columns, 3.3 * lines), dpi=80, squeeze=False)
-    for axes in grid.flat[len(scenes):]:
-        axes.set_visible(False)
-    for axes, (scene, rows) in zip(grid.flat, scenes.items()):
-        draw_front(axes, rows, label_beside_points)
-        axes.set_title(scene.replace('_', ' '), fontsize=9)
-    figure.suptitle('Best of each engine over its settings and step sizes: lower left is better', fontsize=12)
-    figure.text(0.01, 0.003, footnote([r for rows in scenes.values() for r in rows]), fontsize=8, color='#555555')
-    figure.tight_layout(rect=(0, 0.01, 1, 0.98))
-    figure.savefig(os.path.join(folder, 'all.png'))
-    plt.close(figure)
+def draw_fronts(scenes, folder):
+    """The best of each engine, lower left is better: the panels of PANELS that were run, and every scene, the appendix."""
+    def panel(scene, title):
+        return title, lambda axes: draw_front(axes, [
+            r for r in scenes[scene] if scene not in UNMOVABLE or 'shipped hand' not in r.setting])
+    rows = [r for of_scene in scenes.values() for r in of_scene]
+    heading = 'Best of each engine over its settings and step sizes: lower left is better'
+    chosen = [panel(scene, title) for scene, title in PANELS if scene in scenes]
+    if chosen:
+        draw_panels(chosen, min(2, len(chosen)), (6.0, 4.0), heading, rows, os.path.join(folder, 'summary.png'))
+    draw_panels([panel(scene, scene.replace('_', ' ')) for scene in scenes], min(5, len(scenes)), (4.0, 3.0), heading,
+                rows, os.path.join(folder, 'all.png'))
+
+
+def draw_crowds(times, rows, folder):
+    draw_panels([
+        ('mean time of a step of 1 ms', lambda axes: draw_crowd_panel(axes, times, rows, lambda *crowd: times[crowd][0], 'time [µs]')),
+        ('depth below the floor, or movement at rest', lambda axes: draw_crowd_panel(
+            axes, times, rows, lambda *crowd: max(crowd_error(rows, *crowd), SMALLEST_CROWD), 'error [mm]'))],
+                2, (6.0, 4.8), 'Fastest setting of each engine that did not fail: lower is better', rows, os.path.join(folder, 'crowds.png'))
 
 
 def draw_cost(rows, folder):
     groups = grouped(rows, lambda r: r.scene.rsplit('_', 1)[0])
     for name, of_group in groups.items():
         shortest = min(r.step for r in of_group)
-        figure, axes = plt.subplots(figsize=(11, 6.5), dpi=100)
-        figure.subplots_adjust(left=0.09, right=0.58, top=0.9, bottom=0.1)
+        figure, axes = plt.subplots(figsize=(12, 6.5), dpi=100)
+        figure.subplots_adjust(left=0.08, right=0.53, top=0.9, bottom=0.1)
         labels = []
         at_step = [r for r in of_group if r.step == shortest and r.time > 0]
         for engine, of_engine in grouped(at_step, lambda r: r.engine).items():
@@ -367,12 +344,14 @@ def main(arguments):
         print('usage: plot_speed_accuracy.py FILE.csv', file=sys.stderr)
         return 2
     rows, folder = read(arguments[1]), os.path.dirname(os.path.abspath(arguments[1]))
-    scenes = grouped((r for r in rows if not r.scene.startswith(COST_PREFIX)), lambda r: r.scene)
+    scenes = grouped((r for r in rows if not r.scene.startswith((COST_PREFIX, CROWD_PREFIX))), lambda r: r.scene)
     for scene, of_scene in scenes.items():
         draw_scene(scene, of_scene, folder)
     if scenes:
-        draw_summary(scenes, read_times(os.path.join(folder, 'step_times.csv')), folder)
-        draw_all(scenes, folder)
+        draw_fronts(scenes, folder)
+    times = read_times(os.path.join(folder, 'step_times.csv'))
+    if times:
+        draw_crowds(times, [r for r in rows if r.scene.startswith(CROWD_PREFIX)], folder)
     draw_cost([r for r in rows if r.scene.startswith(COST_PREFIX)], folder)
     return 0
 

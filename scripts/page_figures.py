@@ -1,8 +1,9 @@
-"""Measured figures of README and docs: results files, the pages that show them, and what makes either stale.
+"""Measured figures and charts of README and docs: results files, the pages that show them, and what makes either stale.
 
 `docs/figures/NAME.json` holds what `scripts/figures --page NAME` measured: the texts of the figures, the revision, the
 date, the versions of other engines, and a hash of the sources that the figures depend on. A page shows a figure between
-`<!-- figure NAME/KEY -->` and `<!-- /figure -->`. The hash ignores comments and layout, and needs no git.
+`<!-- figure NAME/KEY -->` and `<!-- /figure -->`. The hash ignores comments and layout, and needs no git. The recipe also draws
+charts, `docs/images/CHART.png`; the results file holds their hashes.
 """
 import datetime
 import hashlib
@@ -14,6 +15,8 @@ import subprocess
 PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 RESULTS = os.path.join('docs', 'figures')
 FIGURE = re.compile(r'(<!-- figure ([a-z_]+)/([a-z0-9_]+) -->\n?)(.*?)(\n?<!-- /figure -->)', re.DOTALL)
+CHART = re.compile(r'\]\((?:docs/)?images/(\w+)\.png\)')
+PICTURES = ('explain', 'mug', 'web_ar', 'web_view')  # screenshots, which measure nothing
 COMMENT = re.compile(r'//[^\n]*|/\*.*?\*/', re.DOTALL)
 SOURCES = ('.cpp', '.h', '.py', '.yaml', '.R', '')  # names' ends; '' is a script
 
@@ -72,8 +75,22 @@ def begin(name, sources):
             'sources': {'paths': sources, 'sha256': hash_of(sources)}}
 
 
-def save(name, begun, figures, engines):
-    write(results_path(name), json.dumps(dict(begun, engines=engines, figures=figures), indent=1, ensure_ascii=False) + '\n')
+def save(name, begun, figures, engines, charts=()):
+    result = dict(begun, engines=engines, charts={chart: hash_of_chart(chart) for chart in charts}, figures=figures)
+    write(results_path(name), json.dumps(result, indent=1, ensure_ascii=False) + '\n')
+
+
+def chart_path(name):
+    return os.path.join('docs', 'images', name + '.png')
+
+
+def hash_of_chart(name):
+    """SHA-256 of a chart's file; empty without one."""
+    path = os.path.join(PACKAGE, chart_path(name))
+    if not os.path.exists(path):
+        return ''
+    with open(path, 'rb') as file:
+        return hashlib.sha256(file.read()).hexdigest()
 
 
 def revision():
@@ -112,6 +129,19 @@ def wrong_pages():
                 found.append('%s: figure %s/%s differs from %s: run scripts/figures --show' % (page, name, key, results_path(name)))
     found += ['%s: %s is shown on no page' % (results_path(name), key) for name, figures in files.items()
               for key in figures if (name, key) not in shown]
+    return found
+
+
+def wrong_charts():
+    """A line for each chart that differs from the one measured, that no recipe draws, or that no page shows."""
+    drawn = {chart: (results_path(name), given) for name in measured() for chart, given in load(name).get('charts', {}).items()}
+    shown = {chart for page in pages() for chart in CHART.findall(read(page))} - set(PICTURES)
+    found = ['%s: belongs to no results file: let a recipe draw it' % chart_path(chart) for chart in sorted(shown - set(drawn))]
+    for chart, (path, given) in sorted(drawn.items()):
+        if hash_of_chart(chart) != given:
+            found.append('%s: differs from %s: draw it again with scripts/figures --page' % (chart_path(chart), path))
+        if chart not in shown:
+            found.append('%s: %s is shown on no page' % (path, chart_path(chart)))
     return found
 
 

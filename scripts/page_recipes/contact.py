@@ -1,14 +1,15 @@
-"""Refinements of contact: benefit, cost, and tiers of geometry."""
+"""Refinements of contact: benefit, cost, and tiers of geometry; speed of a body that a hand hits."""
 import collections
 import re
 
-from .measuring import CORE, Recipe, run
+from .measuring import CORE, Recipe, draw_printed, run
 
 
 def contact():
     benefits, costs = run('ablation').split('\n\nA step of scene (a): ')
     instructions, costs = costs.split(' instructions', 1)
     costs = re.findall(r'^\| (`\w+`) \| .*\(([-+][\d.]+) %\) \|', costs, re.MULTILINE)
+    draw_printed('speed_against_mass', 'plot_speed_against_mass.py', run('speed_against_mass'))
     tiers = collections.OrderedDict()
     for line in run('geometry_tiers').split('\n'):
         found = re.match(r'(.{18}) +([-\d.]+) +([-\d.]+) +([-\d.]+) +([-\d.]+)$', line)
@@ -28,5 +29,6 @@ def _range_of(costs, instructions):
 
 
 RECIPES = {
-    'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'modelling'], contact),
+    'contact': Recipe('5 minutes', CORE + ['benchmark/ablation', 'benchmark/geometry_tiers.cpp', 'benchmark/speed_against_mass.cpp',
+                                    'benchmark/plot_speed_against_mass.py', 'modelling'], contact, ['speed_against_mass']),
 }

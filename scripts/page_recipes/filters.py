@@ -3,11 +3,7 @@ import collections
 import re
 import tempfile
 
-from .measuring import Recipe, rows_of, rows_of_file, run, table
-
-FILTER_SOURCES = ['src/tracking/%s' % name for name in (
-    'constant_velocity_filter.cpp', 'hand_filter.cpp', 'hand_filter.h', 'none_filter.cpp', 'one_euro_filter.cpp', 'tracker.cpp',
-    'window_filter.cpp')]
+from .measuring import CORE, Recipe, draw, rows_of, rows_of_file, run, table
 
 FILTERS = collections.OrderedDict([
     ('none', 'none'), ('window=3', '`window`, F = 3'), ('one_euro', '`one_euro`, beta 100, min_cutoff 2'),
@@ -28,6 +24,7 @@ def _filter_name(row):
 def filters():
     with tempfile.TemporaryDirectory() as folder:
         run('filters', '--output', folder)
+        draw('filters', 'plot_filters.py', folder)
         recorded, held = rows_of_file(folder, 'filters.csv'), rows_of_file(folder, 'filters_held.csv')
     lines = []
     for panel in dict.fromkeys((row['input'], row['frames_per_s']) for row in recorded):
@@ -62,5 +59,6 @@ def _grasps(rows):
 
 
 RECIPES = {
-    'filters': Recipe('15 minutes', FILTER_SOURCES + ['benchmark/filters', 'benchmark/noisy_grasps.cpp'], filters),
+    'filters': Recipe('15 minutes', CORE + ['benchmark/filters', 'benchmark/noisy_grasps.cpp', 'benchmark/plot_filters.py'], filters,
+                      ['filters']),
 }

@@ -5,7 +5,7 @@ import re
 import shutil
 import tempfile
 
-from .measuring import CORE, MeasurementError, Recipe, rows_of_file, run, table
+from .measuring import CORE, MeasurementError, Recipe, keep_chart, rows_of_file, run, table
 
 HANDS = collections.OrderedDict([  # settings of real_grasps, from the defaults to the paper's hand
     ('defaults', {}), ('assist alone', {'hand/strength': 'unlimited', 'hand/palm_strength': 'unlimited', 'hand/pad': '0'}),
@@ -39,11 +39,28 @@ IN_PLACE = 10.0  # [mm]
 SEEDS = 4  # of a tracker's noise
 
 
-def recordings():
-    """Bodies put where the hands recorded in MR_HAND_RECORDINGS close."""
+def recorded_hands():
     folder = os.environ.get('MR_HAND_RECORDINGS')
     if not folder:
         raise MeasurementError('MR_HAND_RECORDINGS is empty; allowed: a folder of recorded hands')
+    return folder
+
+
+def peers():
+    """Our models in several settings, and other engines, in the recorded hands; built as ENGINE_SOURCES says, if it is there."""
+    import plot_real_grasps
+    import race_tables
+    with tempfile.TemporaryDirectory() as output:
+        run('benchmark', '--output', output, '--real', recorded_hands(), *os.environ.get('ENGINE_SOURCES', '').split())
+        keep_chart('real_grasps', os.path.join(output, 'real_grasps.png'))
+        engines = plot_real_grasps.read_engines(output)
+    versions = race_tables.versions(engines)
+    return {'versions': race_tables.described(versions, engines[0].date)}, versions
+
+
+def recordings():
+    """Bodies put where the hands recorded in MR_HAND_RECORDINGS close."""
+    folder = recorded_hands()
     scratch, played = tempfile.mkdtemp(), collections.OrderedDict()
     try:
         for label, chosen in list(HANDS.items()) + [('`seed`, 100 N/m', {'contact_model': 'seed'})]:
@@ -190,5 +207,7 @@ def _newtons(row):
 
 RECIPES = {
     'captures': Recipe('5 minutes', CORE + ['benchmark/real_grasps', 'scripts/captures'], captures),
+    'peers': Recipe('20 minutes', CORE + ['benchmark/real_grasps', 'benchmark/speed_accuracy/engines', 'benchmark/plot_real_grasps.py'],
+                    peers, ['real_grasps']),
     'recordings': Recipe('2 minutes', CORE + ['benchmark/real_grasps'], recordings),
 }

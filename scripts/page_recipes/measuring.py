@@ -1,14 +1,18 @@
-"""What the recipes share: programs to run, tables to read and to write."""
+"""What the recipes share: programs to run, tables to read and to write, charts to draw."""
 import collections
 import csv
 import io
 import os
 import subprocess
+import sys
+import tempfile
 
-from page_figures import PACKAGE
+from page_figures import PACKAGE, chart_path
 
-# `time`: of one core; `sources`: what the figures depend on, files and folders; `measure`: gives ({key: text}, {engine: version}).
-Recipe = collections.namedtuple('Recipe', 'time sources measure')
+# `time`: of one core; `sources`: what the figures depend on, files and folders; `measure`: gives ({key: text}, {engine: version}) and
+# draws `charts`, names of images.
+Recipe = collections.namedtuple('Recipe', 'time sources measure charts', defaults=[()])
+sys.path.insert(0, os.path.join(PACKAGE, 'benchmark'))  # tables and charts
 PROGRAMS = os.path.join(PACKAGE, 'devel', 'lib', 'mr_hand_interaction')
 LAWS = ['src/collision', 'src/response', 'src/simulation', 'src/integration']
 CORE = LAWS + ['src/tracking', 'config/default.yaml']
@@ -35,6 +39,29 @@ def _done(command):
     if done.returncode != 0:
         raise MeasurementError('%s: %s' % (' '.join(command), ' '.join(done.stderr.split())[-300:]))
     return done.stdout
+
+
+def draw(chart, script, source):
+    """Draws a program's results by a script of benchmark/."""
+    with tempfile.TemporaryDirectory() as folder:
+        picture = os.path.join(folder, 'chart.png')
+        _done([sys.executable, os.path.join(PACKAGE, 'benchmark', script), source, picture])
+        keep_chart(chart, picture)
+
+
+def draw_printed(chart, script, printed):
+    """Draws what a program printed."""
+    with tempfile.NamedTemporaryFile('w', suffix='.csv', encoding='utf-8') as file:
+        file.write(printed)
+        file.flush()
+        draw(chart, script, file.name)
+
+
+def keep_chart(chart, picture):
+    """Stores a drawn picture with 64 colours, a quarter of the bytes."""
+    from PIL import Image  # which matplotlib needs, too
+    with Image.open(picture) as drawn:
+        drawn.convert('RGB').quantize(64, dither=0).save(os.path.join(PACKAGE, chart_path(chart)), optimize=True)
 
 
 def rows_of(text):

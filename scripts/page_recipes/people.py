@@ -1,7 +1,7 @@
 """Simulated operators beside people."""
 import re
 
-from .measuring import Recipe, run
+from .measuring import CORE, Recipe, run
 
 
 def people():
@@ -28,5 +28,5 @@ def people_figures(printed):
 
 
 RECIPES = {
-    'people': Recipe('1 minute', ['src/synthetic', 'test/operators'], people),
+    'people': Recipe('1 minute', CORE + ['src/synthetic', 'test/operators'], people),
 }

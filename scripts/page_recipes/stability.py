@@ -1,7 +1,8 @@
 """Stability of contact models by mass, stiffness, contacts and step."""
+import os
 import tempfile
 
-from .measuring import Recipe, rows_of_file, run, table
+from .measuring import Recipe, draw, rows_of_file, run, table
 
 OVERLAP, SWAY, FRICTION = 0.002, 9.0, 0.8  # of stability_map: how deep fingertips press [m]; acceleration at most [m/s^2]
 OUTCOMES = ('stable', 'let_go', 'ejected', 'diverged')
@@ -10,6 +11,7 @@ OUTCOMES = ('stable', 'let_go', 'ejected', 'diverged')
 def stability():
     with tempfile.TemporaryDirectory() as folder:
         run('stability_map', '--output', folder)
+        draw('stability_map', 'plot_stability_map.py', os.path.join(folder, 'stability_map.csv'))
         cells = rows_of_file(folder, 'stability_map.csv')
     for cell in cells:
         cell.update({key: float(value) for key, value in cell.items() if key not in ('model', 'outcome')})
@@ -64,6 +66,6 @@ def _beyond_dampers(cell):
 
 
 RECIPES = {
-    'stability': Recipe('3 minutes', ['src/collision', 'src/response', 'benchmark/stability_map.cpp', 'test/support/stability_map.h'],
-                        stability),
+    'stability': Recipe('3 minutes', ['src/collision', 'src/response', 'benchmark/stability_map.cpp', 'test/support/stability_map.h',
+                                      'benchmark/plot_stability_map.py'], stability, ['stability_map']),
 }

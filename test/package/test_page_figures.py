@@ -11,12 +11,12 @@ PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file
 sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
 import page_figures  # noqa: E402
 import page_recipes  # noqa: E402
-from page_recipes import grasps, people, stability  # noqa: E402
+from page_recipes import engines, grasps, people, stability  # noqa: E402
 
 
 class Pages(unittest.TestCase):
-    def test_show_the_figures_of_their_results_files(self):
-        self.assertEqual(page_figures.wrong_pages(), [])
+    def test_show_the_figures_and_charts_of_their_results_files(self):
+        self.assertEqual(page_figures.wrong_pages() + page_figures.wrong_charts(), [])
 
     def test_were_measured_with_the_code_that_is_here(self):
         stale = [name for name in page_figures.measured() if page_figures.is_stale(name)]
@@ -28,6 +28,7 @@ class Pages(unittest.TestCase):
             result = page_figures.load(name)
             self.assertEqual(result["command"], "scripts/figures --page " + name)
             self.assertEqual(result["sources"]["paths"], page_recipes.RECIPES[name].sources, name)
+            self.assertEqual(list(result.get("charts", {})), list(page_recipes.RECIPES[name].charts), name)
             self.assertTrue(re.match(r"\d{4}-\d\d-\d\d$", result["date"]), result["date"])
             self.assertTrue(result["revision"])
 
@@ -57,6 +58,21 @@ class Mechanism(unittest.TestCase):
     def test_a_figure_without_a_file_and_a_result_without_a_page_are_named(self):
         page_figures.write("README.md", "<!-- figure speed/turn -->1<!-- /figure -->")
         self.assertEqual([line.split(": ")[1].split(" ")[0] for line in page_figures.wrong_pages()], ["figure", "step"])
+
+    def test_a_chart_that_differs_is_drawn_by_no_recipe_or_is_shown_nowhere_is_named(self):
+        def shown(*charts):
+            page_figures.write("README.md", "".join("![](docs/images/%s.png)" % chart for chart in charts))
+            return page_figures.wrong_charts()
+        os.makedirs(os.path.join(self.root, "docs", "images"))
+        for chart in ("speed", "old"):
+            page_figures.write(page_figures.chart_path(chart), "drawn")
+        page_figures.save("speed", page_figures.begin("speed", ["src"]), {}, {}, ["speed"])
+        self.assertEqual(shown("speed", "mug"), [])
+        self.assertEqual(shown("speed", "old"), ["docs/images/old.png: belongs to no results file: let a recipe draw it"])
+        self.assertEqual(shown(), ["docs/figures/speed.json: docs/images/speed.png is shown on no page"])
+        page_figures.write(page_figures.chart_path("speed"), "drawn by another hand")
+        self.assertEqual(shown("speed"), ["docs/images/speed.png: differs from docs/figures/speed.json: "
+                                          "draw it again with scripts/figures --page"])
 
     def test_changed_code_makes_a_file_stale_and_a_comment_does_not(self):
         page_figures.write("src/a.cpp", "// first\nint a\n    = 1;\n")
@@ -136,6 +152,15 @@ class TestPeople(unittest.TestCase):
             "widest": "64 to 66 %", "grip": "2.6 to 3.2 N", "correlation": "r = 0.93 to 0.98",
             "margin": "91 % at 0.5 N of load, 63 % at 7 N",
             "leap": "after 0.10 s; the reach takes 0.12 s longer (12 cm aside), 0.24 s (further)"})
+
+
+class TestCutShort(unittest.TestCase):
+    def test_small_heaps_are_told_apart_from_larger_ones_and_from_blocks_at_rest(self):
+        rows = [dict(scene=scene, bodies_to=str(bodies), relative=str(relative), off_m_s=str(off)) for scene, bodies, relative, off in (
+            ("heap", 8, 1e-5, 1e-6), ("heap", 16, 0.006, 1e-3), ("heap", 32, 0.21, 0.1), ("heap", 64, 0.25, 0.2),
+            ("block", 16, 0.5, 2e-7), ("block", 64, 0.5, 1e-6))]
+        self.assertEqual(engines.cut_short_figures(rows)["error"], "at most 1e-6 m/s at rest, 0.6 % of the change of velocity where "
+                         "up to 16 bodies land on each other, and 21 to 25 % where more do")
 
 
 class TestStability(unittest.TestCase):

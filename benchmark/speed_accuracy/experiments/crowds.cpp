@@ -163,27 +163,24 @@ class Wall final : public Crowd {
 
 void add_crowd_scenes(std::vector<ScenePlan>& scenes) {
   const std::vector<double> steps{0.001};
-  const auto add = [&](const std::string& name, bool full_only,
-                       std::function<std::unique_ptr<Experiment>(bool)> make) {
+  const auto add = [&](const std::string& name, std::function<std::unique_ptr<Experiment>(bool)> make) {
     scenes.push_back({name, "crowd", steps, std::move(make)});
-    scenes.back().full_only = full_only;
+    scenes.back().full_only = true;
     scenes.back().budget = 4.0;  // enough for slow engines
   };
   const auto heap = [](int count, double edge) {
     return [count, edge](bool) { return std::make_unique<Heap>(count, edge, 2.5); };
   };
-  add("crowd_heap_8", false, heap(8, 0.016));
-  add("crowd_heap_12", true, heap(12, 0.016));
-  add("crowd_heap_50", true, heap(50, 0.04));
-  add("crowd_push_50", true, [](bool) { return std::make_unique<Push>(50); });
+  add("crowd_heap_8", heap(8, 0.016));
+  add("crowd_heap_50", heap(50, 0.04));
+  add("crowd_push_50", [](bool) { return std::make_unique<Push>(50); });
   const auto block = [](int count, double gap) {
     return [count, gap](bool) { return std::make_unique<Block>(count, gap); };
   };
-  for (const int count : {50, 200, 1000})
-    add("crowd_block_" + std::to_string(count), true, block(count, 2e-5));
-  add("crowd_close_200", true, block(200, 5e-6));
-  for (const int count : {50, 200}) add("crowd_flush_" + std::to_string(count), true, block(count, 0.0));
-  add("crowd_wall_48", true, [](bool) { return std::make_unique<Wall>(); });
+  for (const int count : {50, 1000}) add("crowd_block_" + std::to_string(count), block(count, 2e-5));
+  add("crowd_close_200", block(200, 5e-6));
+  for (const int count : {50, 200}) add("crowd_flush_" + std::to_string(count), block(count, 0.0));
+  add("crowd_wall_48", [](bool) { return std::make_unique<Wall>(); });
 }
 
 }  // namespace mrhi::benchmark
