@@ -19,10 +19,13 @@ def people_figures(printed):
     swings = sorted(found(r'load ([\d.]+) N, r ([\d.]+), margin (\d+) %'))
     (aside,), (further,) = (found(r'a leap of 12 cm %s: noticed after ([\d.]+) s, reach longer by ([\d.]+) s' % way)
                             for way in ('aside', 'further'))
+    early, late = (found(r'of size [\d.]+ after %.1f s: noticed after ([\d.]+) s, reach longer by ([\d.]+) s' % after) for after in (0.0, 0.3))
     return {
         'widest': span(widest, '%.0f') + ' %', 'grip': span(grips, '%.1f') + ' N',
         'correlation': 'r = ' + span([r for _, r, _ in swings], '%.2f'),
         'margin': '%.0f %% at %.1f N of load, %.0f %% at %.0f N' % (swings[0][2], swings[0][0], swings[-1][2], swings[-1][0]),
+        'size': 'after %s s; reach at most %.2f s longer (at its start), %.2f s (0.3 s later)' % (
+            span([noticed for noticed, _ in early + late], '%.2f'), *(max(longer for _, longer in each) for each in (early, late))),
         'leap': 'after %.2f s; the reach takes %.2f s longer (12 cm aside), %.2f s (further)' % (aside[0], aside[1], further[1]),
     }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "mr_hand_interaction/math.h"
-
 namespace mrhi {
 
 /// Fraction 0..1 of the path at the fraction `time` 0..1 of the duration, from rest to rest (Flash & Hogan
@@ -13,8 +11,9 @@ inline double minimum_jerk(double time) {
 
 /// The same with given end velocities: position at the fraction `time` 0..1 of `duration` seconds; no
 /// acceleration at either end.
-inline Vector3 minimum_jerk(const Vector3& from, const Vector3& from_velocity, const Vector3& to,
-                            const Vector3& to_velocity, double duration, double time) {
+template <class Vector>
+Vector minimum_jerk(const Vector& from, const Vector& from_velocity, const Vector& to,
+                    const Vector& to_velocity, double duration, double time) {
   const double t = time <= 0.0 ? 0.0 : (time >= 1.0 ? 1.0 : time);
   const double t3 = t * t * t, rest = 1.0 - t;
   const double leaving = t + t3 * (-6.0 + 8.0 * t - 3.0 * t * t);

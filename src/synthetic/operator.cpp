@@ -52,7 +52,7 @@ SimulatedOperator::SimulatedOperator(const OperatorSkill& skill, const Body& obj
       mass_(object.mass),
       friction_(std::max(0.1, object.material.static_friction)),
       stiffness_(kInitialStiffness) {
-  prepare_grasp();
+  prepare_grasp(1.0);
   const Pose at = wrist_about({object.start.position, Quaternion::Identity()});
   now_ = {shifted(at, kApproach * retreat_ + kRest), relaxed_posture()};
   way_ = {{0.0, now_.wrist, now_.posture}};
@@ -69,7 +69,10 @@ HandPlace SimulatedOperator::move(double time, const Sight& sight) {
   squeeze(time, since);
   HandPlace next = planned(time);
   if (gripping_) next.posture = postures_->at(depth_);
-  if (since > 0.0) velocity_ = (next.wrist.position - now_.wrist.position) / since;
+  if (since > 0.0) {
+    velocity_ = (next.wrist.position - now_.wrist.position) / since;
+    rate_ = (next.posture - now_.posture) / since;
+  }
   last_time_ = time;
   now_ = next;
   next.wrist.position += tremor_.at(time);
@@ -144,6 +147,7 @@ void SimulatedOperator::decide(double time, const Moment& seen) {
       return watch(time, seen);
     case Phase::reaching:
       if (is_astray(seen)) return watch(time, seen);
+      if (past_.front().sight.size != size_) replan_fingers(past_.front().sight.size);
       if (arrived(time)) grasp(time, seen);
       return;
     case Phase::grasping:
@@ -179,7 +183,7 @@ void SimulatedOperator::watch(double time, const Moment& seen) {
 
 /// One movement: the hand opens on its path, and has closed around the object on arrival.
 void SimulatedOperator::reach(double time, const Moment& seen) {
-  prepare_grasp();
+  prepare_grasp(past_.front().sight.size);
   const double lag = time - seen.time;
   const double distance = (wrist_about(seen.sight.object).position - now_.wrist.position).norm();
   const double duration = movement_time(distance, kGraspWidth);
@@ -191,6 +195,23 @@ void SimulatedOperator::reach(double time, const Moment& seen) {
   fingers_ = {way_.front(), way_.front(), way_.back()};
   fingers_[1].time = kWidest * duration;
   fingers_[1].posture = postures_->open;
+}
+
+/// From its present posture and rate the hand opens for the new size, and closes in the time that closing
+/// usually takes (Hoff & Arbib 1993). The wrist's path stays, as people's does at first (Castiello et al.
+/// 1993); the hand waits at its end for the fingers.
+void SimulatedOperator::replan_fingers(double size) {
+  fit_to(size);
+  const double reach = way_.back().time, since = last_time_ - began_;
+  const double widest = std::max(kWidest * reach, since + kMinDuration);
+  fingers_ = {way_.front(), way_.front(), way_.back()};
+  fingers_[0].time = since;
+  fingers_[0].posture = now_.posture;
+  fingers_[0].rate = rate_;
+  fingers_[1].time = widest;
+  fingers_[1].posture = postures_->open;
+  fingers_[2].time = widest + (1.0 - kWidest) * reach;
+  fingers_[2].posture = postures_->near;
 }
 
 void SimulatedOperator::grasp(double time, const Moment& seen) {
@@ -254,17 +275,26 @@ void SimulatedOperator::lose() {
   then(kOpen * skill_.pace, shifted(now_.wrist, kApproach * retreat_), postures_->open);
 }
 
-void SimulatedOperator::prepare_grasp() {
-  Grasp grasp = usual_;
-  const double usual_depth = grasp.contacts[0].depth + grasp.contacts[1].depth;
-  for (FingertipContact& contact : grasp.contacts) {
+void SimulatedOperator::prepare_grasp(double size) {
+  grasp_ = usual_;
+  const double usual_depth = grasp_.contacts[0].depth + grasp_.contacts[1].depth;
+  for (FingertipContact& contact : grasp_.contacts) {
     contact.depth /= usual_depth;
     contact.depth *= std::max(0.0, 1.0 + skill_.grip_spread * random_.gaussian());
   }
-  grasp.opening = skill_.opening;
-  postures_.emplace(grasp, skill_.grip_depth);
+  grasp_.opening = skill_.opening;
+  fit_to(size);
   misplaced_.position = random_.gaussian_vector(skill_.placing_error);
   misplaced_.orientation = rotation_by(random_.gaussian_vector(skill_.turning_error));
+}
+
+/// Plans the fingers for an object of this size: its surfaces are moved along their normals.
+void SimulatedOperator::fit_to(double size) {
+  size_ = size;
+  Grasp grasp = grasp_;
+  for (FingertipContact& contact : grasp.contacts)
+    contact.point += (size - 1.0) * contact.normal.dot(contact.point) * contact.normal;
+  postures_.emplace(grasp, skill_.grip_depth);
 }
 
 /// Returns the wrist pose of the grasp with the least rotation among those allowed by the object's symmetry.

@@ -69,6 +69,7 @@ struct Sight {
   std::size_t goal = 0;               ///< index of the task's next goal
   Pose body = {};                     ///< of the operator who floats, centre of mass in world
   Twist body_twist = {};              ///< of it, world axes
+  double size = 1.0;                  ///< of the object as shown, relative to its body
 };
 
 /// A program in the role of a participant, which moves a hand by what it sees.
@@ -141,9 +142,9 @@ class PractisedPerson : public Person {
 };
 
 /// A program in the role of a person: takes an object, carries it to its target and releases it, by what it
-/// saw a reaction time ago, and corrects a movement to the object by what it saw 0.1 s ago. Its grip follows
-/// the force felt shortly before and the expected load. A right hand; the same seed and sights give the same
-/// bits.
+/// saw a reaction time ago, and corrects a movement to the object by what it saw 0.1 s ago. It fits its
+/// fingers to the size that it saw a reaction time ago. Its grip follows the force felt shortly before and
+/// the expected load. A right hand; the same seed and sights give the same bits.
 class SimulatedOperator : public Person {
  public:
   enum class Phase : std::uint8_t { watching, reaching, grasping, carrying, letting_go, withdrawing, done };
@@ -171,7 +172,9 @@ class SimulatedOperator : public Person {
   void let_go();
   void shake_off();
   void lose();
-  void prepare_grasp();
+  void prepare_grasp(double size);
+  void fit_to(double size);
+  void replan_fingers(double size);
   void correct(double since, const Moment& seen);
   void squeeze(double time, double since);
   const Moment& before(double time, double delay) const;
@@ -182,7 +185,9 @@ class SimulatedOperator : public Person {
   void plan(Phase phase, const Moment& seen, const Vector3& drift = Vector3::Zero());
   void then(double duration, const Pose& wrist, const HandPosture& posture);
   void close_to(double depth, double duration);
-  bool arrived(double time) const { return time >= began_ + way_.back().time; }
+  bool arrived(double time) const {
+    return time >= began_ + (fingers_.empty() ? way_ : fingers_).back().time;
+  }
   bool is_astray(const Moment& seen) const;
   double distance_from_grip(const Moment& seen) const;
   double movement_time(double distance, double width) const;
@@ -195,6 +200,8 @@ class SimulatedOperator : public Person {
   double mass_, friction_;
   double firmness_ = 1.0;  ///< grip factor, increased after a loss
 
+  Grasp grasp_;        ///< of the next or present take, for an object of size 1
+  double size_ = 1.0;  ///< of the object, for which the postures are
   std::optional<GripPostures> postures_;
   std::optional<double> gripping_;      ///< time since which force leads the fingers [s]
   double depth_ = 0.0, wanted_ = 0.0;   ///< of the squeeze, present [m] and wanted [N]
@@ -217,7 +224,8 @@ class SimulatedOperator : public Person {
   Vector3 swing_ = Vector3::Zero();
   Moment aim_{};  ///< by which the path was planned
   HandPlace now_;
-  Vector3 velocity_ = Vector3::Zero();  ///< of the wrist
+  Vector3 velocity_ = Vector3::Zero();      ///< of the wrist
+  HandPosture rate_ = HandPosture::Zero();  ///< of the posture [rad/s]
   double last_time_ = 0.0;
 };
 

@@ -197,7 +197,9 @@ HandPlace hand_at(const std::vector<Keyframe>& keys, double time) {
   const Pose wrist{
       minimum_jerk(from.wrist.position, from.velocity, to.wrist.position, to.velocity, duration, t),
       from.wrist.orientation.slerp(share, to.wrist.orientation).normalized()};
-  return {wrist, posture_between(from, to, share)};
+  const HandPosture still = HandPosture::Zero();
+  return {wrist,
+          posture_between(from, to, share) + minimum_jerk(still, from.rate, still, to.rate, duration, t)};
 }
 
 Pose default_device_mount() {

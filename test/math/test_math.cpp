@@ -200,9 +200,9 @@ TEST(MinimumJerk, has_the_velocities_that_were_asked_for_at_its_ends) {
 }
 
 TEST(MinimumJerk, is_straight_and_even_when_the_ends_have_the_mean_velocity) {
-  const Vector3 from(0, 0, 0), velocity(0.1, -0.3, 0.2);
+  const Vector3 from(0, 0, 0), velocity(0.1, -0.3, 0.2), to = 2.0 * velocity;
   for (const double t : {0.1, 0.35, 0.8}) {
-    const Vector3 p = minimum_jerk(from, velocity, 2.0 * velocity, velocity, 2.0, t);
+    const Vector3 p = minimum_jerk(from, velocity, to, velocity, 2.0, t);
     EXPECT_LT((p - 2.0 * t * velocity).norm(), 1e-12);
   }
 }

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 namespace mrhi {
 namespace {
@@ -185,6 +186,87 @@ TEST_P(OperatorSees, a_leap_of_the_object_as_soon_as_people_and_goes_where_it_is
               GetParam() == Leap::aside ? "aside" : "further", noticed, longer);
 }
 INSTANTIATE_TEST_SUITE_P(All, OperatorSees, ::testing::Values(Leap::aside, Leap::further));
+
+/// An object whose size changes while the hand is under way to it.
+struct Resized {
+  const char* object;
+  double size;   ///< afterwards, relative to the body
+  double after;  ///< the start of the reach [s]
+};
+
+/// How an operator meets it, beside one for whom the object stays as it is.
+struct Refitted {
+  double noticed = 0.0;    ///< from the change until the apertures differ by 1 mm [s]
+  double longer = 0.0;     ///< of the reach [s]
+  double wider = 0.0;      ///< difference of the apertures as the reaches end [m]
+  double aside = 0.0;      ///< greatest distance of the wrists [m]
+  double rate_step = 0.0;  ///< greatest change of the aperture's rate from frame to frame [m/s]
+};
+
+/// Distance of the tips of thumb and index finger [m].
+double aperture_of(const HandPlace& hand) {
+  const auto tip = [&](int finger) {
+    return finger_joints(human_hand().fingers[static_cast<std::size_t>(finger)], hand.posture.col(finger))[4];
+  };
+  return (tip(0) - tip(1)).norm();
+}
+
+Refitted meet_another_size(const Resized& resized, const OperatorSkill& skill, std::uint64_t person) {
+  constexpr double kFrame = 1.0 / 115.0, kVisible = 1e-3;  // [s], [m]
+  const Body body = testing::shipped_body(resized.object);
+  SimulatedOperator surprised(skill, body, person), undisturbed(skill, body, person);
+  const auto reaches = [](const SimulatedOperator& one) {
+    return one.phase() == SimulatedOperator::Phase::reaching;
+  };
+  Refitted met;
+  std::optional<double> began, noticed;
+  double usual = 0.0, aperture = 0.0, rate = 0.0;
+  for (double time = 0.0; !began || reaches(surprised) || reaches(undisturbed); time += kFrame) {
+    Sight sight{body.start, {}, Vector3(0.0, 0.1, 0.3)}, changed = sight;
+    if (began && time >= *began + resized.after) changed.size = resized.size;
+    const HandPlace expected = undisturbed.move(time, sight), hand = surprised.move(time, changed);
+    if (!began && reaches(surprised)) began = time;
+    if (reaches(undisturbed)) {
+      usual = aperture_of(expected);
+      met.aside = std::max(met.aside, (hand.wrist.position - expected.wrist.position).norm());
+    }
+    met.longer += kFrame * (reaches(surprised) - reaches(undisturbed));
+    if (!reaches(surprised)) continue;
+    const double last = std::exchange(aperture, aperture_of(hand));
+    const double last_rate = std::exchange(rate, last > 0.0 ? (aperture - last) / kFrame : 0.0);
+    met.rate_step = std::max(met.rate_step, std::abs(rate - last_rate));
+    if (!noticed && std::abs(aperture - usual) > kVisible) noticed = time;
+  }
+  met.noticed = noticed.value() - *began - resized.after;
+  met.wider = aperture - usual;
+  return met;
+}
+
+class OperatorSeesSize : public ::testing::TestWithParam<Resized> {};
+
+// People need at least 0.3 s (MacKenzie & Iberall 1994); their wrist goes on as it was (Castiello et al.
+// 1993).
+TEST_P(OperatorSeesSize, change_later_than_a_leap_and_closes_on_the_new_size) {
+  const Resized resized = GetParam();
+  const double width = resized.object == std::string("cube") ? 0.05 : 0.02;
+  double noticed = 0.0, longer = 0.0;
+  for (std::uint64_t person = kFirst; person < kFirst + kPersons; ++person) {
+    const Refitted met = meet_another_size(resized, draw_skill("veteran", person), person);
+    EXPECT_GT(met.noticed, 0.15) << "person " << person << ": at least a quick one's reaction time";
+    EXPECT_LT(met.noticed, 0.4) << "person " << person;
+    EXPECT_NEAR(met.wider, (resized.size - 1.0) * width, 2e-3) << "person " << person;
+    EXPECT_EQ(met.aside, 0.0) << "person " << person;
+    EXPECT_LT(met.rate_step, 0.03) << "person " << person << ": three times that of an undisturbed hand";
+    noticed += met.noticed / kPersons;
+    longer += met.longer / kPersons;
+  }
+  EXPECT_EQ(longer > 0.05, resized.after > 0.0) << "early on, there is time to open wider: " << longer;
+  std::printf("%s of size %.1f after %.1f s: noticed after %.2f s, reach longer by %.2f s\n", resized.object,
+              resized.size, resized.after, noticed, longer);
+}
+INSTANTIATE_TEST_SUITE_P(All, OperatorSeesSize,
+                         ::testing::Values(Resized{"long_cuboid", 2.0, 0.0}, Resized{"long_cuboid", 2.0, 0.3},
+                                           Resized{"cube", 0.5, 0.0}, Resized{"cube", 0.5, 0.3}));
 
 }  // namespace
 }  // namespace mrhi

@@ -147,10 +147,14 @@ class TestPeople(unittest.TestCase):
             "0.0 g, 200 g, 20 cm: grip 3.7 N, p90 4.3 N, load 0.5 N, r 0.93, margin 91 %\n"
             "cube, beginner: grip 3.2 N, p90 3.4 N, 6 of 6 hold it\nflat_cuboid, veteran: grip 2.6 N, p90 2.8 N, 6 of 6 hold it\n"
             "a leap of 12 cm aside: noticed after 0.10 s, reach longer by 0.12 s\n"
-            "a leap of 12 cm further: noticed after 0.10 s, reach longer by 0.24 s\n")
+            "a leap of 12 cm further: noticed after 0.10 s, reach longer by 0.24 s\n"
+            "long_cuboid of size 2.0 after 0.0 s: noticed after 0.30 s, reach longer by 0.00 s\n"
+            "long_cuboid of size 2.0 after 0.3 s: noticed after 0.26 s, reach longer by 0.13 s\n"
+            "cube of size 0.5 after 0.3 s: noticed after 0.20 s, reach longer by 0.10 s\n")
         self.assertEqual(figures, {
             "widest": "64 to 66 %", "grip": "2.6 to 3.2 N", "correlation": "r = 0.93 to 0.98",
             "margin": "91 % at 0.5 N of load, 63 % at 7 N",
+            "size": "after 0.20 to 0.30 s; reach at most 0.00 s longer (at its start), 0.13 s (0.3 s later)",
             "leap": "after 0.10 s; the reach takes 0.12 s longer (12 cm aside), 0.24 s (further)"})
 
 

@@ -21,6 +21,7 @@ struct Keyframe {
   /// Centre about which the hand rotates from the previous keyframe, along an arc [m, world]; empty: straight
   /// path.
   std::optional<Vector3> centre = std::nullopt;
+  HandPosture rate = HandPosture::Zero();  ///< of the posture [rad/s]
 };
 
 struct HandPlace {
