@@ -9,6 +9,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "../math/fnv1a.h"
 #include "../text/files.h"
 #include "../text/text.h"
 #include "../text/yaml.h"
@@ -43,14 +44,11 @@ std::string text_in(const YAML::Node& node, const char* key) {
   return value.Scalar();
 }
 
-/// File name of a spawned URDF. A whole URDF may have no name: a hash of its text names it (FNV-1a).
+/// File name of a spawned URDF. A whole URDF may have no name: a hash of its text names it.
 std::string spawned_file(const ObjectRequest& request) {
-  std::string name = request.name;
-  if (name.empty()) {
-    std::uint64_t sum = 0xcbf29ce484222325u;
-    for (const char c : request.urdf) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-    name = std::to_string(sum);
-  }
+  const std::string& urdf = request.urdf;
+  const std::string name =
+      request.name.empty() ? std::to_string(Fnv1a().add(urdf.data(), urdf.size()).value) : request.name;
   return "spawn/" + name + ".urdf";
 }
 

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "../math/rotation.h"
-#include "../simulation/contact_phase.h"
 #include "generated_skin.h"
 #include "mr_hand_interaction/synthetic/hand_skeleton.h"
 #include "mr_hand_interaction/tracking/joints.h"
@@ -345,7 +344,7 @@ void SkinPaint::paint(const RenderedHand& rendered, const SkinSurface& surface, 
 void press_flat(const std::vector<Contact>& contacts, const SimulationState& state, std::uint32_t hand,
                 const Skin& skin, SkinSurface& surface) {
   for (const Contact& contact : contacts) {
-    if (!contact.touching() || hand_id(contact, state) != hand) continue;
+    if (!contact.touching() || state.hands[contact.key.hand].current.id != hand) continue;
     const double force = std::abs(contact.normal.dot(contact.force));
     const double depth = kDeepestPress * (1.0 - std::exp(-force / kCompressionForce));
     const double around = kFlattenedRadius * contact.radius;
