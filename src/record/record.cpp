@@ -14,7 +14,6 @@
 #include "../text/text.h"
 #include "../text/yaml.h"
 #include "mr_hand_interaction/parameters.h"
-#include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
@@ -149,11 +148,7 @@ auto in_form(const Read& read) {
 struct Making {
   LiveSimulation& simulation;
 
-  void operator()(const Spawn& spawn) const {
-    simulation.add(spawn.prepared ? spawn.prepared->part
-                                  : requested_scene(spawn.request,
-                                                    scene_options(simulation.simulation().configuration())));
-  }
+  void operator()(const Spawn& spawn) const { simulation.add(spawn.prepared->part); }
   void operator()(const Delete& remove) const { simulation.remove(remove.name); }
   void operator()(const SetParameters& set) const { simulation.set_parameters(set.values); }
   void operator()(const PlaceObject& place) const { simulation.place(place.name, place.pose); }
@@ -270,6 +265,11 @@ std::map<std::string, std::string> written_to(const std::string& folder, const R
 PreparedSpawn::PreparedSpawn(const ObjectRequest& request, const SceneOptions& options)
     : part(requested_scene(request, options)), geometry(part), files(contents_of(part.mesh_files)) {}
 
+void prepare(Change& change, const SceneOptions& options) {
+  if (auto* spawn = std::get_if<Spawn>(&change))
+    spawn->prepared = std::make_shared<const PreparedSpawn>(spawn->request, options);
+}
+
 void make(const Change& change, LiveSimulation& simulation) {
   std::visit(Making{simulation}, change);
 }
@@ -287,9 +287,7 @@ std::string to_yaml(const Change& change) {
 RecordedFiles files_of(const Change& change) {
   const Spawn* spawn = std::get_if<Spawn>(&change);
   if (spawn == nullptr || spawn->request.urdf.empty()) return {};
-  RecordedFiles files = spawn->prepared
-                            ? spawn->prepared->files
-                            : contents_of(requested_scene(spawn->request, scene_options({})).mesh_files);
+  RecordedFiles files = spawn->prepared->files;
   files.push_back({spawned_file(spawn->request), spawn->request.urdf});
   return files;
 }
@@ -325,11 +323,8 @@ World world_of_file(const std::string& urdf_file, const Scene& scene, const Conf
 void note(const Change& change, const LiveSimulation& simulation, World& world) {
   const Configuration& configuration = simulation.simulation().configuration();
   if (const auto* spawn = std::get_if<Spawn>(&change)) {
-    const auto prepared =
-        spawn->prepared ? spawn->prepared
-                        : std::make_shared<const PreparedSpawn>(spawn->request, scene_options(configuration));
-    world.added.push_back({spawn->request, roots_of(prepared->part)});
-    add_files(files_of(Spawn{spawn->request, prepared}), world);
+    world.added.push_back({spawn->request, roots_of(spawn->prepared->part)});
+    add_files(files_of(change), world);
   } else if (const auto* remove = std::get_if<Delete>(&change)) {
     const auto added = std::find_if(world.added.begin(), world.added.end(), [&](const Added& one) {
       return std::find(one.roots.begin(), one.roots.end(), remove->name) != one.roots.end();
@@ -395,8 +390,7 @@ Configuration configuration_of(const World& world, std::vector<std::string>& unk
   return configuration;
 }
 
-Scene scene_of(const World& world, const Configuration& configuration, const std::string& folder) {
-  SceneOptions options = scene_options(configuration);
+Scene scene_of(const World& world, SceneOptions options, const std::string& folder) {
   options.gravity.reset();
   options.mesh_files = written_to(folder, world.files);
   Scene scene = scene_of_files(world, options, folder);
