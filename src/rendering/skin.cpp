@@ -5,7 +5,7 @@
 
 #include "../math/rotation.h"
 #include "generated_skin.h"
-#include "mr_hand_interaction/synthetic/hand_skeleton.h"
+#include "mr_hand_interaction/tracking/hand_skeleton.h"
 #include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi {
@@ -50,9 +50,7 @@ const std::array<Skin, 3>& skins() {
 }
 
 HandPosture rest_posture() {
-  HandPosture posture = HandPosture::Zero();
-  posture.row(kAbduction) << 0.0, 6.0, 1.0, -5.0, -10.0;
-  return kDegree * posture;
+  return posture_of_degrees({{0.0, 6.0, 1.0, -5.0, -10.0}});
 }
 
 /// z is as near to `back` as x allows. y = back x x, z = x x y: what is left of `back` across x.

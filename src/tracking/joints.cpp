@@ -90,7 +90,8 @@ double fraction(float value) {
 double bone_radius(const HandJoints& joints, const PalmFit& fit, std::size_t finger, std::size_t bone) {
   const auto& own = joints.bone_width[finger][bone];
   const auto& width = own ? own : joints.finger_width[finger];
-  return as_float(width ? 0.5 * static_cast<double>(*width) : fit.scale * anatomy::kFingerRadii[finger]);
+  return as_float(width ? 0.5 * static_cast<double>(*width)
+                        : fit.scale * (1e-3 * anatomy::kFingerRadii[finger]));
 }
 
 /// The finger's joints with the metacarpal's base filled in. The thumb has no metacarpal in the palm.

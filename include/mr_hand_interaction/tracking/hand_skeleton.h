@@ -47,6 +47,9 @@ HandPosture within_limits(const HandSkeleton& skeleton, const HandPosture& postu
 HandJoints hand_joints(const HandSkeleton& skeleton, Side side, const Pose& wrist,
                        const HandPosture& posture);
 
+/// Angles in degrees: a row for each joint, with a column for each finger; missing columns are 0.
+HandPosture posture_of_degrees(const double (&degrees)[kFingerJoints][kFingers]);
+
 /// Half closed, as at rest; flat with the fingers together; index extended from a loose fist.
 HandPosture relaxed_posture();
 HandPosture flat_posture();
