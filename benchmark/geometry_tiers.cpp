@@ -12,7 +12,7 @@
 #include "collision/closest_features.h"
 #include "modelling/skin_model.h"
 #include "modelling/skin_parts.h"
-#include "mr_hand_interaction/synthetic/hand_skeleton.h"
+#include "mr_hand_interaction/tracking/hand_skeleton.h"
 #include "mr_hand_interaction/tracking/joints.h"
 #include "rendering/skin.h"
 

@@ -8,6 +8,7 @@
 
 #include "synthetic/performance.h"
 #include "text/files.h"
+#include "training/operator_trial.h"
 
 namespace mrhi {
 namespace {
@@ -27,7 +28,7 @@ int share_held(const std::string& motion, testing::Staging staging, int seeds) {
 void write_row(const std::string& motion, const testing::Staging& estimated, int seeds) {
   testing::Staging fixed = estimated;
   fixed.filter.noise = kUsualNoise;
-  const std::string place = estimated.stand ? "table" : "0 g";
+  const std::string place = estimated.stand != nullptr ? "table" : "0 g";
   (CsvRows(std::cout) << motion << place << 1e3 * estimated.noise << estimated.correlation
                       << estimated.dropped << estimated.rate << share_held(motion, estimated, seeds)
                       << share_held(motion, fixed, seeds))
@@ -48,7 +49,7 @@ void write_table(const std::string& motion, bool table, const Colour& colour, in
       staging.rate = rate;
       staging.correlation = colour.correlation;
       staging.dropped = colour.dropped;
-      staging.stand = table;
+      staging.stand = table ? stand_under : nullptr;
       staging.gravity = table ? -9.81 : 0.0;
       write_row(motion, staging, seeds);
     }

@@ -21,9 +21,9 @@ constexpr double kHour = 3600.0;            // [s]
 constexpr Nanoseconds kBreak = 50'000'000;  // between two recordings
 
 /// Largest growth after the first hour. The step's cost varies with other load of the machine.
-constexpr double kMostMemory = 1.02, kMostTime = 1.5;
+constexpr double kMaxMemory = 1.02, kMaxTime = 1.5;
 /// Largest relative drift of a body in free flight. Rotation is exact to rounding, which accumulates.
-constexpr double kMostDrift = 1e-9;
+constexpr double kMaxDrift = 1e-9;
 
 double resident_megabytes() {
   std::ifstream pages("/proc/self/statm");
@@ -146,10 +146,10 @@ int run(double hours) {
     std::fflush(stdout);
     soak.steps.clear();
   }
-  bool flat = soak.drift() < kMostDrift;
+  bool flat = soak.drift() < kMaxDrift;
   for (const Hour& hour : seen)
-    flat = flat && hour.megabytes < kMostMemory * seen[0].megabytes && hour.files == seen[0].files &&
-           hour.p99 < kMostTime * seen[0].p99;
+    flat = flat && hour.megabytes < kMaxMemory * seen[0].megabytes && hour.files == seen[0].files &&
+           hour.p99 < kMaxTime * seen[0].p99;
   std::puts(flat ? "flat" : "NOT FLAT");
   return flat ? 0 : 1;
 }

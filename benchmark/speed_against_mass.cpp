@@ -10,11 +10,11 @@
 namespace mrhi {
 namespace {
 
-constexpr double kSpeed = 0.3;                   // of the hand [m/s]
-constexpr double kSize = 0.1;                    // of the cube [m]
-constexpr double kStart = 0.1, kRate = 120.0;    // of the impact [s], of frames [1/s]
-constexpr double kPushed = 0.4;                  // duration of the hand's motion after the impact [s]
-constexpr double kLeast = 0.01, kMost = 1000.0;  // masses [kg]
+constexpr double kSpeed = 0.3;                        // of the hand [m/s]
+constexpr double kSize = 0.1;                         // of the cube [m]
+constexpr double kStart = 0.1, kRate = 120.0;         // of the impact [s], of frames [1/s]
+constexpr double kPushed = 0.4;                       // duration of the hand's motion after the impact [s]
+constexpr double kMinMass = 0.01, kMaxMass = 1000.0;  // masses [kg]
 constexpr int kSteps = 50;
 
 /// The whole hand translates: it does not close.
@@ -60,7 +60,7 @@ int main() {
       {"paper", false, HandStrength()}};
   for (const auto& [name, palm, strength] : hands) {
     for (int i = 0; i <= kSteps; ++i) {
-      const double mass = kLeast * std::pow(kMost / kLeast, double(i) / kSteps);
+      const double mass = kMinMass * std::pow(kMaxMass / kMinMass, double(i) / kSteps);
       const Speeds found = speeds(mass, palm, strength);
       (CsvRows(std::cout) << name << mass << found.impact << found.pushed).end_row();
     }

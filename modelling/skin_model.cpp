@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mr_hand_interaction/synthetic/hand_skeleton.h"
+#include "mr_hand_interaction/tracking/hand_skeleton.h"
 #include "simplified_mesh.h"
 #include "skin_parts.h"
 #include "skin_shape.h"

@@ -24,9 +24,9 @@
 namespace mrhi::crowds {
 namespace {
 
-constexpr double kStep = 0.001;        // [s]
-constexpr int kReference = 200;        // budgets of the reference solution
-constexpr std::size_t kMostExact = 4;  // maximum bodies of an island that is not large
+constexpr double kStep = 0.001;       // [s]
+constexpr int kReference = 200;       // budgets of the reference solution
+constexpr std::size_t kMaxExact = 4;  // maximum bodies of an island that is not large
 
 double cpu_time() {
   timespec now{};
@@ -100,7 +100,7 @@ class Falling {
     islands.build(step);
     ImpactSolver().resolve(step, islands, ImpactFriction::coulomb);
     for (const Island& island : islands.all()) {
-      if (island.bodies.size() > kMostExact)
+      if (island.bodies.size() > kMaxExact)
         compare(step, island, carried, sizes[rounded_up(island.bodies.size())]);
     }
   }

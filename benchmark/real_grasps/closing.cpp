@@ -8,19 +8,19 @@
 namespace mrhi::real_grasps {
 namespace {
 
-constexpr double kTip = 0.0088;        // radius of a fingertip [m]
-constexpr double kPalm = 0.013;        // radius of the palm [m]
-constexpr double kClear = 0.002;       // required gap between hand and body at the start [m]
-constexpr std::size_t kEarliest = 90;  // maximum frames from that start to the closing
-constexpr double kGap = 0.06;          // maximum time between a track's frames [s]
-constexpr double kShortest = 0.15;     // of a closing [s]
-constexpr double kDeeper = 0.004;      // closing beyond the body's width [m]
-constexpr double kAfterwards = 0.4;    // time after the hand has opened [s]
-constexpr std::size_t kOpening = 6;    // frames after opening for the hand's speed
-constexpr std::size_t kMost = 10;      // closings of one recording
-constexpr double kOpen = 0.02;         // aperture of a passing hand beyond the body's width [m]
-constexpr double kPassing = 1.0;       // required duration of that [s]
-constexpr double kLevel = 0.7;         // standing bodies are grasped from the side: sine of the elevation
+constexpr double kTip = 0.0088;           // radius of a fingertip [m]
+constexpr double kPalm = 0.013;           // radius of the palm [m]
+constexpr double kClear = 0.002;          // required gap between hand and body at the start [m]
+constexpr std::size_t kEarliest = 90;     // maximum frames from that start to the closing
+constexpr double kGap = 0.06;             // maximum time between a track's frames [s]
+constexpr double kShortest = 0.15;        // of a closing [s]
+constexpr double kDeeper = 0.004;         // closing beyond the body's width [m]
+constexpr double kAfterwards = 0.4;       // time after the hand has opened [s]
+constexpr std::size_t kOpening = 6;       // frames after opening for the hand's speed
+constexpr std::size_t kMaxClosings = 10;  // closings of one recording
+constexpr double kOpen = 0.02;            // aperture of a passing hand beyond the body's width [m]
+constexpr double kPassing = 1.0;          // required duration of that [s]
+constexpr double kLevel = 0.7;            // standing bodies are grasped from the side: sine of the elevation
 
 const Vector3& thumb(const Sighting& hand) {
   return hand.joints[0][4];
@@ -198,7 +198,7 @@ std::vector<Closing> closings(const Recording& recording, const Row& row) {
     const Track& track = recording.tracks[t];
     for (const Span& span :
          row.kind == Kind::pass ? open_spans(track, row.kind, limit) : closed_spans(track, row.kind, limit)) {
-      if (tried++ == kMost) return found;
+      if (tried++ == kMaxClosings) return found;
       if (auto next = closing(recording, t, span, row)) found.push_back(std::move(*next));
     }
   }

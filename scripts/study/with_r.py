@@ -31,7 +31,7 @@ def models(cells):
     with tempfile.TemporaryDirectory() as folder:
         given, made = os.path.join(folder, 'cells.csv'), os.path.join(folder, 'models.csv')
         _long(cells).to_csv(given, index=False, float_format='%.17g')
-        script = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'mixed_models.R')
+        script = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'count_models.R')
         try:
             done = subprocess.run(['Rscript', '--vanilla', script, given, made], stdout=subprocess.DEVNULL,
                                   stderr=subprocess.PIPE, universal_newlines=True, timeout=LONGEST)

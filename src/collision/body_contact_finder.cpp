@@ -38,10 +38,10 @@ double fastest_point(const MovingBody& moving) {
   return moving.twist.angular.norm() * moving.body.bounding_radius;
 }
 
-/// Distance of a point from a shape is at least this [m]. As from the box about it: max(|x_i| - half_i, 0) in
-/// each dimension. Less than the true distance beside a round side.
-double at_least_away(const Vector3& point, const ManifoldShape& shape, const Pose& in_body,
-                     const Pose& body) {
+/// Lower bound of the distance of a point from a shape [m]: its distance from the box about the shape, whose
+/// components are max(|x_i| - half_i, 0). Less than the true distance beside a round side.
+double distance_lower_bound(const Vector3& point, const ManifoldShape& shape, const Pose& in_body,
+                            const Pose& body) {
   if (!shape.prism) return 0.0;
   const Vector3 local = in_body.to_local(body.to_local(point));
   return (local.cwiseAbs() - shape.prism->half).cwiseMax(0.0).norm();
@@ -64,13 +64,14 @@ struct ShapePair {
   }
 };
 
-struct Touch {
+/// Manifold of a pair as it is now, or at the time of impact within the step.
+struct TimedManifold {
   Manifold manifold;
-  double time = -1.0;  // of a first touch within the step
+  double time = -1.0;  // of impact [s]; -1: now
 };
 
 /// The rate is n.(v_a - v_b) of the deepest point as a point of both, n from b to a (Eq. 8).
-std::optional<Touch> swept(const ShapePair& pair, double step, double margin) {
+std::optional<TimedManifold> sweep_pair(const ShapePair& pair, double step, double margin) {
   const auto separation = [&](double time) -> std::optional<Separation<Manifold>> {
     const Manifold manifold = pair.at(time, margin);
     if (manifold.count == 0) return std::nullopt;
@@ -81,15 +82,16 @@ std::optional<Touch> swept(const ShapePair& pair, double step, double margin) {
   };
   const auto touch = first_touch<Manifold>(separation, step);
   if (!touch) return std::nullopt;
-  return Touch{touch->features, touch->time};
+  return TimedManifold{touch->features, touch->time};
 }
 
-std::optional<Touch> find_touch(const ShapePair& pair, double step, double followed, double margin) {
+std::optional<TimedManifold> find_manifold(const ShapePair& pair, double step, double followed,
+                                           double margin) {
   const double least_breadth = followed < 2.0 * kMinSeparation ? kMinBreadth : kAnyBreadth;
   const Manifold manifold = pair.now(margin, least_breadth);
   if (manifold.count == 0) return std::nullopt;
-  if (manifold.deepest().depth >= -followed) return Touch{manifold};
-  return swept(pair, step, margin);
+  if (manifold.deepest().depth >= -followed) return TimedManifold{manifold};
+  return sweep_pair(pair, step, margin);
 }
 
 /// Moves the anchors to the point of friction and keeps their stretch, so that rolling stretches nothing.
@@ -161,7 +163,7 @@ struct Common {
   Vector3 centre_a, centre_b;  // when they touch
 };
 
-Common common_of(const ShapePair& pair, const Touch& touch) {
+Common common_of(const ShapePair& pair, const TimedManifold& touch) {
   const Material material = together(pair.a.body.material, pair.b.body.material);
   if (touch.time <= 0.0) return {material, pair.a.pose.position, pair.b.pose.position};
   return {material, pair.a.at(touch.time).position, pair.b.at(touch.time).position};
@@ -175,8 +177,8 @@ double stiffness_of(double breadth) {
 /// For a pair that meets within the step, points are where it will touch, arms start from the centres at that
 /// time, and the depth is at most 0 until then. All points have equal fractions of the pair's stiffness.
 /// `contact` is that of the last step if it is `remembered`.
-void make_contact(const BodyContactKey& key, const ShapePair& pair, const Touch& touch, const Common& common,
-                  const ManifoldPoint& point, bool remembered, BodyContact& contact) {
+void make_contact(const BodyContactKey& key, const ShapePair& pair, const TimedManifold& touch,
+                  const Common& common, const ManifoldPoint& point, bool remembered, BodyContact& contact) {
   const bool lasting = remembered && contact.depth > 0.0 && point.depth > 0.0;
   contact.key = key;
   contact.point = point.point;
@@ -302,12 +304,12 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
       b.body.bounding_radius + travel + turned;  // of b's centre: its own turning is in the ball
   for (std::size_t i = 0; i < a.body.shapes.size(); ++i) {
     const double away =
-        at_least_away(b.pose.position, geometry_.shapes[ia][i], a.body.shapes[i].pose, a.pose);
+        distance_lower_bound(b.pose.position, geometry_.shapes[ia][i], a.body.shapes[i].pose, a.pose);
     if (away > within) continue;
     for (std::size_t j = 0; j < b.body.shapes.size(); ++j) {
       const ShapePair pair{
           a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j]};
-      auto touch = find_touch(pair, step, followed_, margin);
+      auto touch = find_manifold(pair, step, followed_, margin);
       if (!touch) continue;
       sort_points(touch->manifold);
       const Common common = common_of(pair, *touch);

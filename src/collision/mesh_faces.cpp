@@ -394,7 +394,7 @@ std::vector<Vector3> vertex_normals(const TriangleMesh& mesh, const FaceFinder& 
 
 }  // namespace
 
-FlatFaces flat_faces(const TriangleMesh& unsorted) {
+FlatFaces merge_coplanar_triangles(const TriangleMesh& unsorted) {
   const TriangleMesh mesh = sorted(unsorted);
   const Neighbourhood neighbourhood(mesh);
   Eigen::AlignedBox3d box;

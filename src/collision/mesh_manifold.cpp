@@ -9,7 +9,7 @@
 namespace mrhi {
 namespace {
 
-/// Smallest cosine between the normals of touches in one region (20 degrees).
+/// Smallest cosine between the normals of contacts in one region (20 degrees).
 constexpr double kMinSameRegionCosine = 0.94;
 constexpr double kSameDepth = 1e-6;
 /// Names of a byte: 0 to 99 corners and 100 to 127 edges of what sticks out in b, and 128 beyond these of
@@ -35,7 +35,7 @@ struct Probe {
   }
 };
 
-struct Touch {
+struct ProbeContact {
   Vector3 point, normal;
   double depth;
   std::uint8_t feature;
@@ -58,7 +58,7 @@ struct Probing {
     if (features.distance < -kDeep || std::abs(features.distance) < kCoincides) --deep_left;
   }
 
-  std::optional<Touch> touch(const Probe& probe) const {
+  std::optional<ProbeContact> find_contact(const Probe& probe) const {
     const Vector3 middle = 0.5 * (probe.start + probe.end);
     const double reach = other.bounding_radius + margin + 0.5 * (probe.end - probe.start).norm();
     if ((middle - other_pose.position).squaredNorm() > reach * reach) return std::nullopt;
@@ -71,8 +71,8 @@ struct Probing {
     if (probe.start != probe.end && at_end) return std::nullopt;
     const Vector3 normal = other_pose.orientation * features->normal;
     const Vector3 midway = features->point + 0.5 * features->distance * features->normal;
-    return Touch{other_pose * midway, other_is_b ? normal : Vector3(-normal), -features->distance,
-                 static_cast<std::uint8_t>(other_is_b ? probe.name : kSecond + probe.name)};
+    return ProbeContact{other_pose * midway, other_is_b ? normal : Vector3(-normal), -features->distance,
+                        static_cast<std::uint8_t>(other_is_b ? probe.name : kSecond + probe.name)};
   }
 
   /// No part of a node is deeper in the other shape than this. Signed distance changes by no more than the
@@ -166,18 +166,18 @@ struct Probes {
   }
 };
 
-/// Calls `see(touch)` for what of both shapes sticks out in the other, but for nodes of meshes that are not
+/// Calls `see(contact)` for what of both shapes sticks out in the other, but for nodes of meshes that are not
 /// `wanted(probing, node)`.
 ///
 /// Visits of a tree are always in the same order, so that the first of equals is the same one at every call.
-class Touches {
+class ProbeContacts {
  public:
-  Touches(const Probing& of_a, const Probing& of_b) : both_{{of_a, of_b}} {
-    const auto touches = [this](const Probing& probing, const MeshTree::Node& node) {
+  ProbeContacts(const Probing& of_a, const Probing& of_b) : both_{{of_a, of_b}} {
+    const auto may_touch = [this](const Probing& probing, const MeshTree::Node& node) {
       return count_ <= kRemembered && probing.max_depth(node) >= -probing.margin;
     };
-    measure(touches, [this](const Touch& touch) {
-      if (count_ < kRemembered) remembered_[count_] = touch;
+    measure(may_touch, [this](const ProbeContact& contact) {
+      if (count_ < kRemembered) remembered_[count_] = contact;
       ++count_;
     });
   }
@@ -191,19 +191,19 @@ class Touches {
   /// Returns the first of the deepest of those that `fits` accepts and that are deeper than `least`.
   /// The bound grows with what is found: nodes that cannot exceed it are left out.
   template <typename Fits>
-  std::optional<Touch> deepest(double min_depth, const Fits& fits) const {
+  std::optional<ProbeContact> deepest(double min_depth, const Fits& fits) const {
     double depth = min_depth;
     each([&](const Probing& probing, const MeshTree::Node& node) { return probing.max_depth(node) > depth; },
-         [&](const Touch& touch) {
-           if (touch.depth > depth && fits(touch)) depth = touch.depth;
+         [&](const ProbeContact& contact) {
+           if (contact.depth > depth && fits(contact)) depth = contact.depth;
          });
     if (depth <= min_depth) return std::nullopt;
     depth -= kSameDepth;
-    std::optional<Touch> found;
+    std::optional<ProbeContact> found;
     each([&](const Probing& probing,
              const MeshTree::Node& node) { return !found && probing.max_depth(node) >= depth; },
-         [&](const Touch& touch) {
-           if (!found && touch.depth >= depth && fits(touch)) found = touch;
+         [&](const ProbeContact& contact) {
+           if (!found && contact.depth >= depth && fits(contact)) found = contact;
          });
     return found;
   }
@@ -220,89 +220,90 @@ class Touches {
       };
       const auto try_out = [&](const Probe& probe) {
         if (probing.deep_left <= 0) return;
-        if (const auto touch = probing.touch(probe)) see(*touch);
+        if (const auto contact = probing.find_contact(probe)) see(*contact);
       };
       Probes<decltype(wanted_here), decltype(try_out)>{probing, wanted_here, try_out}.each();
     }
   }
 
   std::array<Probing, 2> both_;
-  std::array<Touch, kRemembered> remembered_;
+  std::array<ProbeContact, kRemembered> remembered_;
   std::size_t count_ = 0;
 };
 
-/// The touches of the deepest one's region that are farthest in eight directions across its normal. The first
-/// direction is 0.1 rad off u, so that none is along a box's sides, where rounding would decide between two
-/// corners.
+/// The contacts of the deepest one's region that are farthest in eight directions across its normal. The
+/// first direction is 0.1 rad off u, so that none is along a box's sides, where rounding would decide between
+/// two corners.
 class Spread {
  public:
-  Spread(const Touches& touches, const Touch& deepest) : deepest_(deepest) {
+  Spread(const ProbeContacts& contacts, const ProbeContact& deepest) : deepest_(deepest) {
     const Vector3 u = deepest.normal.unitOrthogonal(), v = deepest.normal.cross(u);
     for (std::size_t k = 0; k < kDirections; ++k) {
       const double angle = 0.1 + 0.25 * 3.141592653589793 * static_cast<double>(k);
       out_[k] = std::cos(angle) * u + std::sin(angle) * v;
     }
     farthest_.fill(-1e300);
-    touches.each([&](const Probing& probing, const MeshTree::Node& node) { return may_be(probing, node); },
-                 [&](const Touch& touch) { see(touch); });
+    contacts.each([&](const Probing& probing, const MeshTree::Node& node) { return may_be(probing, node); },
+                  [&](const ProbeContact& contact) { see(contact); });
   }
 
-  const std::array<Touch, kDirections>& outermost() const { return outermost_; }
+  const std::array<ProbeContact, kDirections>& outermost() const { return outermost_; }
 
  private:
   bool may_be(const Probing& probing, const MeshTree::Node& node) const {
     const Vector3 offset = probing.pose * node.centre - deepest_.point;
-    // A touch is midway between the surfaces: half the margin from the part.
+    // A contact is midway between the surfaces: half the margin from the part.
     const double around = node.radius + 0.5 * probing.margin + std::max(0.0, 0.5 * deepest_.depth);
     bool farther = false;
     for (std::size_t k = 0; k < kDirections && !farther; ++k)
       farther = out_[k].dot(offset) + around > farthest_[k] + kSameDepth;
     return farther && probing.max_depth(node) >= -probing.margin;
   }
-  void see(const Touch& touch) {
-    if (touch.normal.dot(deepest_.normal) < kMinSameRegionCosine) return;
+  void see(const ProbeContact& contact) {
+    if (contact.normal.dot(deepest_.normal) < kMinSameRegionCosine) return;
     for (std::size_t k = 0; k < kDirections; ++k) {
-      const double distance = out_[k].dot(touch.point - deepest_.point);
-      if (distance > farthest_[k] + kSameDepth) farthest_[k] = distance, outermost_[k] = touch;
+      const double distance = out_[k].dot(contact.point - deepest_.point);
+      if (distance > farthest_[k] + kSameDepth) farthest_[k] = distance, outermost_[k] = contact;
     }
   }
 
-  const Touch& deepest_;
+  const ProbeContact& deepest_;
   std::array<Vector3, kDirections> out_;
   std::array<double, kDirections> farthest_;
-  std::array<Touch, kDirections> outermost_;
+  std::array<ProbeContact, kDirections> outermost_;
 };
 
 using Names = std::array<bool, 256>;
 
-/// Adds the region of the deepest touch, seen along the normal, in the plane of u and v. While they are
+/// Adds the region of the deepest contact, seen along the normal, in the plane of u and v. While they are
 /// sorted, `feature` counts the points; in the end it is a name again. Two with the same name, which numbers
 /// modulo 100 and 28 may give, get the next free one.
-void add_region(const Touches& touches, const Touch& deepest, int number, Names& named, Manifold& manifold) {
-  const Spread spread(touches, deepest);
+void add_region(const ProbeContacts& contacts, const ProbeContact& deepest, int number, Names& named,
+                Manifold& manifold) {
+  const Spread spread(contacts, deepest);
   const Vector3 u = deepest.normal.unitOrthogonal(), v = deepest.normal.cross(u);
-  std::array<const Touch*, kDirections + 1> taken{};
+  std::array<const ProbeContact*, kDirections + 1> taken{};
   ContactRegion region;
-  const auto take = [&](const Touch& touch) {
+  const auto take = [&](const ProbeContact& contact) {
     for (int i = 0; i < region.count; ++i)
-      if (taken[static_cast<std::size_t>(i)]->feature == touch.feature &&
-          taken[static_cast<std::size_t>(i)]->point == touch.point)
+      if (taken[static_cast<std::size_t>(i)]->feature == contact.feature &&
+          taken[static_cast<std::size_t>(i)]->point == contact.point)
         return;
-    taken[static_cast<std::size_t>(region.count)] = &touch;
-    const Vector3 offset = touch.point - deepest.point;
-    region.add({{{u.dot(offset), v.dot(offset)}}, touch.depth, static_cast<std::uint8_t>(region.count), 0});
+    taken[static_cast<std::size_t>(region.count)] = &contact;
+    const Vector3 offset = contact.point - deepest.point;
+    region.add({{{u.dot(offset), v.dot(offset)}}, contact.depth, static_cast<std::uint8_t>(region.count), 0});
   };
   take(deepest);
-  for (const Touch& touch : spread.outermost()) take(touch);
+  for (const ProbeContact& contact : spread.outermost()) take(contact);
   region.sort_around();
   region.reduce();
   region.straighten();
   for (int i = 0; i < region.count; ++i) {
-    const Touch& touch = *taken[region[i].feature];
-    std::uint8_t name = touch.feature;
+    const ProbeContact& contact = *taken[region[i].feature];
+    std::uint8_t name = contact.feature;
     while (named[name]) ++name;
     named[name] = true;
-    add_point(manifold, touch.point, touch.depth, name);
+    add_point(manifold, contact.point, contact.depth, name);
     (manifold.end() - 1)->region = static_cast<std::uint8_t>(number);
   }
 }
@@ -310,18 +311,18 @@ void add_region(const Touches& touches, const Touch& deepest, int number, Names&
 /// Two convex shapes touch in one region: what agrees with no other is a corner near an edge.
 /// Elsewhere each further region begins with the deepest overlap that agrees with none of the others. Gaps do
 /// not begin one: beyond the rim of a table the nearest surface of it is its side.
-Manifold chosen(const Touches& touches, bool convex) {
+Manifold chosen(const ProbeContacts& contacts, bool convex) {
   Manifold manifold;
   Names named{};
-  auto deepest = touches.deepest(-1e300, [](const Touch&) { return true; });
+  auto deepest = contacts.deepest(-1e300, [](const ProbeContact&) { return true; });
   for (int region = 0; deepest; ++region) {
     (region == 0 ? manifold.normal : manifold.other_normals[static_cast<std::size_t>(region - 1)]) =
         deepest->normal;
-    add_region(touches, *deepest, region, named, manifold);
+    add_region(contacts, *deepest, region, named, manifold);
     if (convex || region + 1 == Manifold::kMaxRegions) break;
-    deepest = touches.deepest(0.0, [&](const Touch& touch) {
+    deepest = contacts.deepest(0.0, [&](const ProbeContact& contact) {
       for (int k = 0; k <= region; ++k)
-        if (touch.normal.dot(manifold.normal_of(k)) >= kMinSameRegionCosine) return false;
+        if (contact.normal.dot(manifold.normal_of(k)) >= kMinSameRegionCosine) return false;
       return true;
     });
   }

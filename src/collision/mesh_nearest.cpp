@@ -46,7 +46,7 @@ void MeshNearest::visit(const MeshTree& tree, const Limit& limit, const See& see
     const double s = std::max(0.0, std::min(per_squared * segment_.along.dot(offset), 1.0));
     return {node, (offset - s * segment_.along).squaredNorm()};
   };
-  std::array<Open, MeshTree::kMostLevels> open;
+  std::array<Open, MeshTree::kMaxLevels> open;
   std::size_t count = 0;
   open[count++] = look(0);
   while (count > 0) {
@@ -77,8 +77,8 @@ void MeshNearest::search(const MeshTree& tree, double range) {
 /// the nearest is no farther than d + s, and all left out no nearer than b - s, so that margin = (b - d) / 2.
 /// Faces beyond the first 28 and edges beyond the nearest 12 bring b down.
 NearParts MeshNearest::near_parts(const MeshTree& tree) const {
-  constexpr std::size_t kEdgesKept = 12, kFacesKept = NearParts::kMost - kEdgesKept;
-  constexpr double kMostSlack = 1e-4, kRounding = 1e-9;
+  constexpr std::size_t kEdgesKept = 12, kFacesKept = NearParts::kCapacity - kEdgesKept;
+  constexpr double kMaxMargin = 1e-4, kRounding = 1e-9;
   struct Near {
     double distance;
     int part;
@@ -86,7 +86,7 @@ NearParts MeshNearest::near_parts(const MeshTree& tree) const {
   std::array<Near, kEdgesKept + 1> edges;
   std::array<Near, kFacesKept> faces;
   std::size_t edge_count = 0, face_count = 0;
-  double bound = nearest().distance + 2.0 * kMostSlack;
+  double bound = nearest().distance + 2.0 * kMaxMargin;
   const auto before = [](const Near& a, const Near& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.part < b.part;
   };
@@ -116,7 +116,7 @@ NearParts MeshNearest::near_parts(const MeshTree& tree) const {
   const auto add = [&](int part) {
     const auto end = near.parts.begin() + static_cast<std::ptrdiff_t>(near.count);
     if (std::find(near.parts.begin(), end, part) != end) return;
-    if (near.count < NearParts::kMost) near.parts[near.count] = part;
+    if (near.count < NearParts::kCapacity) near.parts[near.count] = part;
     ++near.count;
   };
   std::sort(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(face_count), before);
@@ -127,7 +127,7 @@ NearParts MeshNearest::near_parts(const MeshTree& tree) const {
     add(edges[i].part);
     for (const int face : surface_.edges()[static_cast<std::size_t>(edges[i].part - faces_)].faces) add(face);
   }
-  if (near.count > NearParts::kMost) return {};
+  if (near.count > NearParts::kCapacity) return {};
   near.start = segment_.start, near.end = segment_.end();
   near.margin = std::max(0.0, 0.5 * (bound - nearest().distance) - kRounding);
   return near;

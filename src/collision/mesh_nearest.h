@@ -9,11 +9,11 @@ namespace mrhi {
 /// Parts that may be nearest to a segment whose ends are within `margin` of the given ones. All others are
 /// farther.
 struct NearParts {
-  static constexpr std::size_t kMost = 40;
+  static constexpr std::size_t kCapacity = 40;
 
   Vector3 start = Vector3::Zero(), end = Vector3::Zero();
   double margin = 0.0;  // [m]; 0: nothing is known
-  std::array<int, kMost> parts;
+  std::array<int, kCapacity> parts;
   std::size_t count = 0;
 
   /// Larger distance of the segment's ends from the given ones.

@@ -42,7 +42,7 @@ struct Seen {
 }  // namespace
 
 MeshSurface::MeshSurface(const TriangleMesh& mesh) {
-  FlatFaces flat = flat_faces(mesh);
+  FlatFaces flat = merge_coplanar_triangles(mesh);
   corners_ = std::move(flat.corners);
   corner_normals_ = std::move(flat.corner_normals);
   closed_ = flat.closed;

@@ -40,8 +40,8 @@ struct FlatFaces {
 /// origin, against its size, has more rounding than this allows for, and is cut into more faces.
 constexpr double kFlatness = 5e-7;
 
-/// Throws std::invalid_argument if no triangle has an area.
-FlatFaces flat_faces(const TriangleMesh& mesh);
+/// Merges the triangles of each plane into one face. Throws std::invalid_argument if no triangle has an area.
+FlatFaces merge_coplanar_triangles(const TriangleMesh& mesh);
 
 /// What of a surface a segment is nearest to.
 enum class SurfacePart { face, edge, corner };

@@ -30,7 +30,7 @@ class MeshTree {
 
   /// No branch is longer. A stack of open nodes has at most one more than there are levels, as each node that
   /// is opened puts back two: halving by the median, 64 hold any mesh.
-  static constexpr std::size_t kMostLevels = 64;
+  static constexpr std::size_t kMaxLevels = 64;
 
   explicit MeshTree(const MeshSurface& surface);
 
@@ -56,7 +56,7 @@ class MeshTree {
 
 template <typename Admits, typename See>
 void MeshTree::visit(const Admits& admits, const See& see) const {
-  std::array<int, kMostLevels> open;
+  std::array<int, kMaxLevels> open;
   std::size_t count = 0;
   open[count++] = 0;
   while (count > 0) {
@@ -73,7 +73,7 @@ void MeshTree::search(const Cost& cost, const Limit& limit, const See& see) cons
     int node;
     double cost;
   };
-  std::array<Open, kMostLevels> open;
+  std::array<Open, kMaxLevels> open;
   std::size_t count = 0;
   open[count++] = {0, cost(node(0))};
   while (count > 0) {

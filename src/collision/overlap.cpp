@@ -53,7 +53,7 @@ struct Solid {
 /// it is less deep by half the difference of both depths, which leads to the middle of a layer between two
 /// flat faces. A manifold's depth, between corners and edges, does not detect coinciding faces.
 double common_ball(const Solid& a, const Solid& b) {
-  constexpr int kAcross = 5, kMostSteps = 16;
+  constexpr int kAcross = 5, kMaxSteps = 16;
   const Eigen::AlignedBox3d box = box_around(a.body);
   double largest = 0.0;
   constexpr int kStarts = kAcross * kAcross * kAcross;
@@ -63,7 +63,7 @@ double common_ball(const Solid& a, const Solid& b) {
     const Vector3 part(start % kAcross, row % kAcross, layer);
     const Vector3 offset = (2.0 * part / (kAcross - 1) - Vector3::Ones()) * 0.9;
     Vector3 place = a.pose * Vector3(box.center() + offset.cwiseProduct(0.5 * box.sizes()));
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < kMaxSteps; ++step) {
       const Solid::Depth in_a = a.at(place), in_b = b.at(place);
       largest = std::max(largest, 2.0 * std::min(in_a.depth, in_b.depth));
       const Solid::Depth& lesser = in_a.depth < in_b.depth ? in_a : in_b;

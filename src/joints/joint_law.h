@@ -30,7 +30,7 @@ class JointLaw {
   void settle(double velocity, JointState& state) const;
 
  private:
-  /// A spring with the force limit `most`, whose end moves with the joint: stiffness * (stretch - step *
+  /// A spring with a force limit, whose end moves with the joint: stiffness * (stretch - step *
   /// velocity).
   struct Hold {
     double stiffness = 0.0, stretch = 0.0, max_force = 0.0;
@@ -39,7 +39,7 @@ class JointLaw {
     double slope(double travel) const;
     double energy(double travel) const;
   };
-  /// A limit at the distance `room`.
+  /// A limit; its clearance is that of the position at the start of the step.
   struct Stop {
     double clearance = Joint::kUnlimited, sign = 1.0;
     double penetration(double travel) const;

@@ -9,11 +9,11 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "../math/fnv1a.h"
 #include "../text/files.h"
 #include "../text/text.h"
 #include "../text/yaml.h"
 #include "mr_hand_interaction/parameters.h"
-#include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
@@ -43,14 +43,11 @@ std::string text_in(const YAML::Node& node, const char* key) {
   return value.Scalar();
 }
 
-/// File name of a spawned URDF. A whole URDF may have no name: a hash of its text names it (FNV-1a).
+/// File name of a spawned URDF. A whole URDF may have no name: a hash of its text names it.
 std::string spawned_file(const ObjectRequest& request) {
-  std::string name = request.name;
-  if (name.empty()) {
-    std::uint64_t sum = 0xcbf29ce484222325u;
-    for (const char c : request.urdf) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-    name = std::to_string(sum);
-  }
+  const std::string& urdf = request.urdf;
+  const std::string name =
+      request.name.empty() ? std::to_string(Fnv1a().add(urdf.data(), urdf.size()).value) : request.name;
   return "spawn/" + name + ".urdf";
 }
 
@@ -151,11 +148,7 @@ auto in_form(const Read& read) {
 struct Making {
   LiveSimulation& simulation;
 
-  void operator()(const Spawn& spawn) const {
-    simulation.add(spawn.prepared ? spawn.prepared->part
-                                  : requested_scene(spawn.request,
-                                                    scene_options(simulation.simulation().configuration())));
-  }
+  void operator()(const Spawn& spawn) const { simulation.add(spawn.prepared->part); }
   void operator()(const Delete& remove) const { simulation.remove(remove.name); }
   void operator()(const SetParameters& set) const { simulation.set_parameters(set.values); }
   void operator()(const PlaceObject& place) const { simulation.place(place.name, place.pose); }
@@ -272,6 +265,11 @@ std::map<std::string, std::string> written_to(const std::string& folder, const R
 PreparedSpawn::PreparedSpawn(const ObjectRequest& request, const SceneOptions& options)
     : part(requested_scene(request, options)), geometry(part), files(contents_of(part.mesh_files)) {}
 
+void prepare(Change& change, const SceneOptions& options) {
+  if (auto* spawn = std::get_if<Spawn>(&change))
+    spawn->prepared = std::make_shared<const PreparedSpawn>(spawn->request, options);
+}
+
 void make(const Change& change, LiveSimulation& simulation) {
   std::visit(Making{simulation}, change);
 }
@@ -289,9 +287,7 @@ std::string to_yaml(const Change& change) {
 RecordedFiles files_of(const Change& change) {
   const Spawn* spawn = std::get_if<Spawn>(&change);
   if (spawn == nullptr || spawn->request.urdf.empty()) return {};
-  RecordedFiles files = spawn->prepared
-                            ? spawn->prepared->files
-                            : contents_of(requested_scene(spawn->request, scene_options({})).mesh_files);
+  RecordedFiles files = spawn->prepared->files;
   files.push_back({spawned_file(spawn->request), spawn->request.urdf});
   return files;
 }
@@ -327,11 +323,8 @@ World world_of_file(const std::string& urdf_file, const Scene& scene, const Conf
 void note(const Change& change, const LiveSimulation& simulation, World& world) {
   const Configuration& configuration = simulation.simulation().configuration();
   if (const auto* spawn = std::get_if<Spawn>(&change)) {
-    const auto prepared =
-        spawn->prepared ? spawn->prepared
-                        : std::make_shared<const PreparedSpawn>(spawn->request, scene_options(configuration));
-    world.added.push_back({spawn->request, roots_of(prepared->part)});
-    add_files(files_of(Spawn{spawn->request, prepared}), world);
+    world.added.push_back({spawn->request, roots_of(spawn->prepared->part)});
+    add_files(files_of(change), world);
   } else if (const auto* remove = std::get_if<Delete>(&change)) {
     const auto added = std::find_if(world.added.begin(), world.added.end(), [&](const Added& one) {
       return std::find(one.roots.begin(), one.roots.end(), remove->name) != one.roots.end();
@@ -397,8 +390,7 @@ Configuration configuration_of(const World& world, std::vector<std::string>& unk
   return configuration;
 }
 
-Scene scene_of(const World& world, const Configuration& configuration, const std::string& folder) {
-  SceneOptions options = scene_options(configuration);
+Scene scene_of(const World& world, SceneOptions options, const std::string& folder) {
   options.gravity.reset();
   options.mesh_files = written_to(folder, world.files);
   Scene scene = scene_of_files(world, options, folder);

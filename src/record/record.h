@@ -12,6 +12,7 @@
 #include "../collision/scene_geometry.h"
 #include "mr_hand_interaction/live_simulation.h"
 #include "mr_hand_interaction/scene/object_request.h"
+#include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/tracking/hand.h"
 
 namespace mrhi {
@@ -41,9 +42,8 @@ struct PreparedSpawn {
 
 // Changes of a running simulation, other than hands.
 struct Spawn {
-  ObjectRequest request;  ///< with its name, and a URDF as text
-  std::shared_ptr<const PreparedSpawn> prepared =
-      {};  ///< of the request; null: prepared when the change is applied
+  ObjectRequest request;                               ///< with its name, and a URDF as text
+  std::shared_ptr<const PreparedSpawn> prepared = {};  ///< of the request; null until prepare()
 };
 struct Delete {
   std::string name;
@@ -66,8 +66,12 @@ struct Pause {
 };
 using Change = std::variant<Spawn, Delete, SetParameters, PlaceObject, Restrain, Reset, Pause>;
 
-/// Applies a change, in the node and in a replay alike. Throws as LiveSimulation does, or SceneError; then
-/// nothing has changed.
+/// Prepares a spawn, before it is applied, recorded or written; other changes need nothing. Throws
+/// SceneError.
+void prepare(Change& change, const SceneOptions& options);
+
+/// Applies a change, in the node and in a replay alike. Throws as LiveSimulation does; then nothing has
+/// changed.
 void make(const Change& change, LiveSimulation& simulation);
 
 /// Description for messages: "spawn 'box'".
@@ -111,8 +115,8 @@ World world_from_yaml(const std::string& yaml, const RecordedFiles& files);
 
 /// The parameters of the world. Unknown ones are added to `unknown` and left out.
 Configuration configuration_of(const World& world, std::vector<std::string>& unknown);
-/// Files are written to `folder` to be read. Throws SceneError.
-Scene scene_of(const World& world, const Configuration& configuration, const std::string& folder);
+/// Files are written to `folder` to be read. The scene keeps its own gravity. Throws SceneError.
+Scene scene_of(const World& world, SceneOptions options, const std::string& folder);
 
 /// One input of a live simulation: SimulationInput.msg without ROS.
 struct LogEntry {

@@ -4,9 +4,8 @@
 #include <cstring>
 
 #include "../math/rotation.h"
-#include "../simulation/contact_phase.h"
 #include "generated_skin.h"
-#include "mr_hand_interaction/synthetic/hand_skeleton.h"
+#include "mr_hand_interaction/tracking/hand_skeleton.h"
 #include "mr_hand_interaction/tracking/joints.h"
 
 namespace mrhi {
@@ -51,9 +50,7 @@ const std::array<Skin, 3>& skins() {
 }
 
 HandPosture rest_posture() {
-  HandPosture posture = HandPosture::Zero();
-  posture.row(kAbduction) << 0.0, 6.0, 1.0, -5.0, -10.0;
-  return kDegree * posture;
+  return posture_of_degrees({{0.0, 6.0, 1.0, -5.0, -10.0}});
 }
 
 /// z is as near to `back` as x allows. y = back x x, z = x x y: what is left of `back` across x.
@@ -345,7 +342,7 @@ void SkinPaint::paint(const RenderedHand& rendered, const SkinSurface& surface, 
 void press_flat(const std::vector<Contact>& contacts, const SimulationState& state, std::uint32_t hand,
                 const Skin& skin, SkinSurface& surface) {
   for (const Contact& contact : contacts) {
-    if (!contact.touching() || hand_id(contact, state) != hand) continue;
+    if (!contact.touching() || state.hands[contact.key.hand].current.id != hand) continue;
     const double force = std::abs(contact.normal.dot(contact.force));
     const double depth = kDeepestPress * (1.0 - std::exp(-force / kCompressionForce));
     const double around = kFlattenedRadius * contact.radius;

@@ -92,9 +92,6 @@ const std::set<std::string> kPointTopics = [] {
   topics.erase(kLeapTopic);
   return topics;
 }();
-std::string joined(const std::set<std::string>& names) {
-  return names.empty() ? "none" : text::joined({names.begin(), names.end()});
-}
 
 std::set<std::string> chosen_topics(const std::string& file, const rosbag::Bag& bag,
                                     const std::optional<std::string>& requested, const HandOptions& hands) {
@@ -106,7 +103,7 @@ std::set<std::string> chosen_topics(const std::string& file, const rosbag::Bag& 
     for (const std::string& topic : {name, "/" + name}) {
       if (fitting.count(topic) > 0) return topic;
     }
-    throw BagError(file + ": no topic '" + name + "' with hands; allowed: " + joined(fitting));
+    throw BagError(file + ": no topic '" + name + "' with hands; allowed: " + text::joined_or_none(fitting));
   };
   if (requested) return {found(*requested)};
   if (!hands.topics.empty()) {
@@ -120,8 +117,9 @@ std::set<std::string> chosen_topics(const std::string& file, const rosbag::Bag& 
                         std::inserter(points, points.end()));
   if (!points.empty()) return points;
   if (fitting.size() == 1) return fitting;
-  throw BagError(file + (fitting.empty() ? ": no topic has hands; allowed types: " + joined(kTypes)
-                                         : ": --topic must choose one of " + joined(fitting)));
+  throw BagError(file + (fitting.empty()
+                             ? ": no topic has hands; allowed types: " + text::joined_or_none(kTypes)
+                             : ": --topic must choose one of " + text::joined_or_none(fitting)));
 }
 
 SourceFrame refused(const std::string& reason, const std::string& detail) {
@@ -218,7 +216,7 @@ class BagInput : public FrameSource {
   }
   std::size_t position() const override { return read_; }
   std::size_t size() const override { return view_.size(); }
-  std::string topic() const { return joined(topics_); }
+  std::string topic() const { return text::joined_or_none(topics_); }
 
  private:
   SourceFrame read_tracker(const rosbag::MessageInstance& message) {

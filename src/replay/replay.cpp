@@ -196,8 +196,8 @@ class LogRun {
     World world = world_from_yaml(entry.text, entry.files);
     overrides_.apply(world);
     const Configuration configuration = configuration_of(world, run_.summary.not_known);
-    simulation_ =
-        std::make_unique<LiveSimulation>(scene_of(world, configuration, files_folder()), configuration);
+    simulation_ = std::make_unique<LiveSimulation>(
+        scene_of(world, scene_options(configuration), files_folder()), configuration);
     if (!overrides_.other_scene()) take_state(entry);
     overrides_.place(simulation());
     note_begin(world);
@@ -240,11 +240,9 @@ class LogRun {
     live().changes.push_back(time + text::one_line(to_text(change), 200));
     if (auto* set = std::get_if<SetParameters>(&change)) drop_overridden(*set);
     try {
-      if (auto* spawn = std::get_if<Spawn>(&change)) {
-        SceneOptions options = scene_options(simulation().configuration());
-        options.mesh_files = written_to(files_folder(), entry.files);
-        spawn->prepared = std::make_shared<const PreparedSpawn>(spawn->request, options);
-      }
+      SceneOptions options = scene_options(simulation().configuration());
+      options.mesh_files = written_to(files_folder(), entry.files);
+      prepare(change, options);
       make(change, *simulation_);
     } catch (const std::exception& error) {
       run_.reject("change", error.what());

@@ -100,10 +100,10 @@ void widen(ImpactPoint point, double step) {
 
 }  // namespace
 
-const ImpactSolver::Precision ImpactSolver::kExact{500, 1e-13};
-const ImpactSolver::Precision ImpactSolver::kVisible{30, 1e-6};
+const ImpactSolver::IterationLimits ImpactSolver::kSmallIslandLimits{500, 1e-13};
+const ImpactSolver::IterationLimits ImpactSolver::kLargeIslandLimits{30, 1e-6};
 
-ImpactSolver::ImpactSolver() : precision_(kExact) {
+ImpactSolver::ImpactSolver() : limits_(kSmallIslandLimits) {
   points_.reserve(kPointCapacity);
   impact_.reserve(kPointCapacity);
   times_.reserve(kPointCapacity);
@@ -132,20 +132,20 @@ void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFric
   for (BodyContact& contact : step.body_contacts) contact.impulse.setZero();
   for (const Island& island : islands.all()) {
     collect(step, island);
-    if (springs && by_hand_ && island.bodies.size() == 1 && is_held(step, island)) {
+    if (springs && by_hand_ && island.bodies.size() == 1 && has_persistent_hand_contact(step, island)) {
       const Twist carried = springs(island);
       drop_separating(step, [&carried](const ImpactPoint& point) -> Vector3 {
         return carried.linear + carried.angular.cross(point.b.arm);
       });
     }
     const bool large = is_large(island);
-    precision_ = large ? kVisible : kExact;
+    limits_ = large ? kLargeIslandLimits : kSmallIslandLimits;
     work_ = 0;
     if (large) drop_slow(step);
     if (points_.empty()) continue;
     if (large) {
       const int sweeps = kLargeIslandWork / static_cast<int>(points_.size());
-      precision_.max_sweeps = std::clamp(sweeps, kMinSweeps, kVisible.max_sweeps);
+      limits_.max_sweeps = std::clamp(sweeps, kMinSweeps, kLargeIslandLimits.max_sweeps);
     }
     if (by_hand_ || large) {
       resolve_simultaneously(step);
@@ -160,12 +160,12 @@ void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFric
 void ImpactSolver::resolve(ContactStep& step, const Island& island, ImpactFriction friction,
                            IslandProblem& problem, const std::vector<JointState>& joints) {
   friction_ = friction;
-  precision_ = kExact;
+  limits_ = kSmallIslandLimits;
   problem_ = &problem;
   velocity_ = problem.start();
   collect_in_joints(step, island, joints);
   if (points_.empty()) return;
-  if (is_held(step, island)) {
+  if (has_persistent_hand_contact(step, island)) {
     problem.solve();
     drop_separating(step, [&problem](const ImpactPoint& point) -> Vector3 {
       return point.b.joints->jacobian * problem.joint_velocity();
@@ -435,7 +435,7 @@ bool ImpactSolver::resolve_impact(ContactStep& step) {
 /// error is the largest change of a velocity in a sweep, its scale the largest j n'Kn. Friction depends on j,
 /// so each sweep relaxes the normal first, then friction.
 bool ImpactSolver::solve(double max_impulse) {
-  for (int sweep = 0; sweep < precision_.max_sweeps; ++sweep) {
+  for (int sweep = 0; sweep < limits_.max_sweeps; ++sweep) {
     work_ += impact_.size();
     double error = 0.0, scale = 0.0, sum = 0.0;
     for (ImpactPoint* point : impact_) {
@@ -443,7 +443,7 @@ bool ImpactSolver::solve(double max_impulse) {
       if (point->normal_mass > 0.0) scale = std::max(scale, point->normal_impulse / point->normal_mass);
       sum += point->normal_impulse;
     }
-    if (error <= precision_.converged * scale) return true;
+    if (error <= limits_.tolerance * scale) return true;
     if (sum > kDivergenceFactor * max_impulse) return false;
   }
   return true;

@@ -39,11 +39,12 @@ class ImpactSolver {
 
  private:
   /// Limits of an impact's iteration.
-  struct Precision {
+  struct IterationLimits {
     int max_sweeps;
-    double converged;  // error over the approach velocity
+    double tolerance;  // of the velocity error, over the approach velocity
   };
-  static const Precision kExact, kVisible;
+  static const IterationLimits kSmallIslandLimits;  // to rounding
+  static const IterationLimits kLargeIslandLimits;  // to what is visible
 
   void collect(ContactStep& step, const Island& island);
   void collect_in_joints(ContactStep& step, const Island& island, const std::vector<JointState>& joints);
@@ -75,7 +76,7 @@ class ImpactSolver {
   std::vector<Twist> twists_;  // by body, of a large island
   std::vector<ImpactLaws> laws_;
   bool by_hand_ = false;  // true if a hand takes part in the island's impacts
-  Precision precision_;
+  IterationLimits limits_;
   std::size_t work_ = 0;  // points relaxed for the island
 
   // For an island with joints.

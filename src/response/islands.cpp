@@ -28,7 +28,7 @@ bool is_touched(const ContactStep& step, const Island& island) {
          std::any_of(island.bodies.begin(), island.bodies.end(), is_gripped);
 }
 
-bool is_held(const ContactStep& step, const Island& island) {
+bool has_persistent_hand_contact(const ContactStep& step, const Island& island) {
   return any_contact(step, island,
                      [](const Contact& contact) { return contact.touching() && contact.struck; });
 }

@@ -44,7 +44,7 @@ struct Island {
 /// True if any contact or grip acts on the island.
 bool is_touched(const ContactStep& step, const Island& island);
 /// True if a hand touches the island after its approach has ended: a finger about to collide does not hold.
-bool is_held(const ContactStep& step, const Island& island);
+bool has_persistent_hand_contact(const ContactStep& step, const Island& island);
 
 /// Finds islands. Fixtures and bodies without contacts belong to none.
 class Islands {

@@ -32,7 +32,7 @@ Standing standing() {
   return response.valid() ? Standing::unknown : Standing::no_master;
 }
 
-/// Logs a change. A node that has not registered anything yet is unknown too.
+/// Logs a change.
 void log_change(Standing before, Standing now) {
   const char* const uri = ros::master::getURI().c_str();
   if (now == Standing::no_master)
@@ -40,15 +40,14 @@ void log_change(Standing before, Standing now) {
   if (now == Standing::unknown)
     ROS_ERROR(
         "the ROS master at %s was restarted and does not know this node; existing connections stay, new ones "
-        "are "
-        "impossible: start this node again",
+        "are impossible: start this node again",
         uri);
   if (now == Standing::known && before == Standing::no_master) ROS_INFO("the ROS master at %s is back", uri);
 }
 
 /// Logs when the ROS master is gone, and when a new one does not know this node. Existing connections
 /// continue without a master, but new ones need a restart of the node. Uses its own thread, as calls to a
-/// master on a broken network block.
+/// master on a broken network block. To be created beside a NodeHandle, which has registered the node.
 class MasterWatch {
  public:
   MasterWatch() : thread_([this] { run(); }) {}
@@ -67,15 +66,13 @@ class MasterWatch {
 
  private:
   void run() {
-    bool was_known = false;
     Standing before = Standing::known;
     std::unique_lock<std::mutex> lock(mutex_);
     while (!ended_.wait_for(lock, kPeriod, [this] { return end_; })) {
       lock.unlock();
       const Standing now = standing();
       lock.lock();
-      was_known = was_known || now == Standing::known;
-      if (end_ || !was_known || !ros::ok()) continue;
+      if (end_ || !ros::ok()) continue;
       if (now != before) log_change(before, now);
       before = now;
     }

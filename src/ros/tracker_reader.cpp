@@ -86,8 +86,7 @@ const std::vector<Tracker>& trackers() {
 const Tracker& tracker_of(const TrackerReader::Message& message) {
   for (const Tracker& tracker : trackers())
     if (std::count(tracker.md5s.begin(), tracker.md5s.end(), message.md5) > 0) return tracker;
-  const std::set<std::string> types = TrackerReader::types();
-  std::string allowed = text::joined({types.begin(), types.end()});
+  std::string allowed = text::joined(TrackerReader::types());
   for (const Tracker& tracker : trackers())
     if (tracker.type == message.type) allowed = "md5 " + text::joined(tracker.md5s);
   throw DecodeError(DecodeError::Kind::unknown_version, "unknown version of " +

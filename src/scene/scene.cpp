@@ -185,7 +185,7 @@ Body& free_body(Scene& scene, const std::string& name) {
     names.push_back(body.name);
   }
   throw std::invalid_argument("scene '" + scene.name + "' has no free object '" + name +
-                              "'; allowed: " + (names.empty() ? "none" : text::joined(names)));
+                              "'; allowed: " + text::joined_or_none(names));
 }
 
 void append(const Scene& part, Scene& scene) {

@@ -69,7 +69,7 @@ std::string names_of(const Scene& scene, bool free_only) {
   for (const Body& body : scene.bodies) {
     if (!free_only || !body.fixed) names.push_back(body.name);
   }
-  return names.empty() ? "none" : text::joined(names);
+  return text::joined_or_none(names);
 }
 
 std::size_t known_body(const Scene& scene, const std::string& name, bool free_only) {
@@ -96,9 +96,9 @@ std::size_t graspable_body(const std::string& name, const std::string& object, c
   const std::vector<std::string> known = graspable_bodies(scene);
   if (std::find(known.begin(), known.end(), object) != known.end())
     return static_cast<std::size_t>(*find_body(scene, object));
-  throw ParameterError(
-      "parameter '" + text::one_line(name, 60) + "': no object '" + text::one_line(object, 60) +
-      "' that can be grasped by itself; allowed: " + (known.empty() ? "none" : text::joined(known)));
+  throw ParameterError("parameter '" + text::one_line(name, 60) + "': no object '" +
+                       text::one_line(object, 60) +
+                       "' that can be grasped by itself; allowed: " + text::joined_or_none(known));
 }
 
 /// Throws ParameterError.

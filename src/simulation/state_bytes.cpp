@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "../math/fnv1a.h"
 #include "../tracking/hand_filter.h"
 
 namespace mrhi {
@@ -26,17 +27,6 @@ constexpr std::uint64_t kFormat = 0x6d72686900000008ull;
 void check_limit(int number, double max) {
   if (number < 0 || number > max) refuse("has a number that is too large");
 }
-
-/// FNV-1a.
-struct Checksum {
-  std::uint64_t sum = 14695981039346656037ull;
-
-  Checksum& add(const void* data, std::size_t size) {
-    for (const auto *at = static_cast<const unsigned char*>(data), *end = at + size; at != end; ++at)
-      sum = (sum ^ *at) * 1099511628211ull;
-    return *this;
-  }
-};
 
 /// Largest plausible magnitude of a number in a state.
 constexpr double kMaxNumber = 1e30;
@@ -89,11 +79,11 @@ struct Hash {
   static constexpr bool kHashes = true;
 
   Nanoseconds now;
-  Checksum checksum = {};
+  Fnv1a fnv1a = {};
 
   void check(double) {}
   void check(Nanoseconds) {}
-  void raw(const void* data, std::size_t size) { checksum.add(data, size); }
+  void raw(const void* data, std::size_t size) { fnv1a.add(data, size); }
   static std::size_t count(std::size_t size, std::size_t) { return size; }
 };
 
@@ -392,7 +382,7 @@ std::uint64_t hash(const SimulationState& state) {
   SimulationState copy = state;
   Hash hash{state.time};
   Parts<Hash>(hash).one(copy);
-  return hash.checksum.sum;
+  return hash.fnv1a.value;
 }
 
 std::string to_bytes(const SimulationState& state) {
@@ -401,7 +391,7 @@ std::string to_bytes(const SimulationState& state) {
   Out out;
   out.raw(&format, sizeof format);
   Parts<Out>(out).one(copy);
-  std::uint64_t sum = Checksum().add(out.bytes.data(), out.bytes.size()).sum;
+  std::uint64_t sum = Fnv1a().add(out.bytes.data(), out.bytes.size()).value;
   out.raw(&sum, sizeof sum);
   return out.bytes;
 }
@@ -413,7 +403,7 @@ SimulationState state_from_bytes(const std::string& bytes, const Scene& scene) {
   std::memcpy(&format, bytes.data(), sizeof format);
   std::memcpy(&sum, bytes.data() + size, sizeof sum);
   if (format != kFormat) refuse("is of another version");
-  if (sum != Checksum().add(bytes.data(), size).sum) refuse("is damaged");
+  if (sum != Fnv1a().add(bytes.data(), size).value) refuse("is damaged");
   In in{bytes.data() + sizeof format, bytes.data() + size};
   SimulationState state;
   Parts<In>(in).one(state);

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "mr_hand_interaction/scene/body.h"
-#include "mr_hand_interaction/synthetic/hand_skeleton.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
+#include "mr_hand_interaction/tracking/hand_skeleton.h"
 
 namespace mrhi {
 
@@ -22,9 +22,6 @@ Quaternion turn(double degrees, const Vector3& axis);
 
 /// Wrist pose that puts the right hand's index tip at `tip`, with the orientation of `direction`.
 Pose wrist_for_index_tip(const Vector3& tip, const Pose& direction, const HandPosture& posture);
-
-/// Angles in degrees: a row for each joint, with a column for each finger; missing columns are 0.
-HandPosture posture_of_degrees(const double (&degrees)[kFingerJoints][kFingers]);
 
 /// Builds a motion keyframe by keyframe.
 class Script {

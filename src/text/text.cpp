@@ -49,12 +49,6 @@ std::string vector(const Vector3& value) {
   return "[" + number(value.x()) + ", " + number(value.y()) + ", " + number(value.z()) + "]";
 }
 
-std::string joined(const std::vector<std::string>& texts, const std::string& separator) {
-  std::string list;
-  for (const std::string& text : texts) list += (list.empty() ? "" : separator) + text;
-  return list;
-}
-
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> fields;
   std::size_t begin = 0;

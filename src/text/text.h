@@ -21,8 +21,18 @@ std::string exact(const Vector3& value);  ///< "[x, y, z]"
 std::string vector(const Vector3& value);
 /// Converts a whole text to a number, with a decimal point in any locale; empty for any other text.
 std::optional<double> to_number(const std::string& text);
-/// The texts with a separator between each two.
-std::string joined(const std::vector<std::string>& texts, const std::string& separator = ", ");
+/// The texts of any sequence with a separator between each two.
+template <typename Texts = std::vector<std::string>>
+std::string joined(const Texts& texts, const std::string& separator = ", ") {
+  std::string list;
+  for (const auto& text : texts) list += (list.empty() ? "" : separator) + text;
+  return list;
+}
+/// The texts with commas, for a message; "none" if there are none.
+template <typename Texts>
+std::string joined_or_none(const Texts& texts) {
+  return texts.empty() ? "none" : joined(texts);
+}
 
 /// Names of items that have a name each.
 template <typename Items>

@@ -25,8 +25,8 @@ constexpr double kBoneLengths[kFingers][kBonesPerFinger] = {{0.0, 46.22, 31.57, 
                                                             {64.60, 44.63, 26.33, 17.40},
                                                             {58.00, 41.37, 25.65, 17.30},
                                                             {53.69, 32.74, 18.11, 15.96}};
+constexpr double kFingerRadii[kFingers] = {9.4, 9.0, 8.8, 8.4, 7.4};  // [mm]
 constexpr double kPalmWidth = 0.0842;
-constexpr std::array<double, kFingers> kFingerRadii{{0.0094, 0.0090, 0.0088, 0.0084, 0.0074}};
 }  // namespace anatomy
 
 /// Limits of a hand's size, as a factor on the adult's. Beyond them the unit or the joints are wrong.

@@ -90,7 +90,8 @@ double fraction(float value) {
 double bone_radius(const HandJoints& joints, const PalmFit& fit, std::size_t finger, std::size_t bone) {
   const auto& own = joints.bone_width[finger][bone];
   const auto& width = own ? own : joints.finger_width[finger];
-  return as_float(width ? 0.5 * static_cast<double>(*width) : fit.scale * anatomy::kFingerRadii[finger]);
+  return as_float(width ? 0.5 * static_cast<double>(*width)
+                        : fit.scale * (1e-3 * anatomy::kFingerRadii[finger]));
 }
 
 /// The finger's joints with the metacarpal's base filled in. The thumb has no metacarpal in the palm.
@@ -135,22 +136,19 @@ const char* const kBoneNames[kBonesPerFinger] = {"metacarpal", "proximal", "inte
 /// The words of a name, joined only if there is a defect: nearly every hand has none.
 using Name = std::initializer_list<const char*>;
 
-std::string joined(Name name) {
-  return text::joined({name.begin(), name.end()}, " ");
-}
-
 std::string point_defect(Name name, const std::optional<Vector3>& point) {
   if (!point) return "";
-  if (!point->allFinite()) return joined(name) + " is not finite";
+  if (!point->allFinite()) return text::joined(name, " ") + " is not finite";
   if (point->norm() > kMaxTrackerDistance)
-    return joined(name) + " is " + std::to_string(point->norm()) + " m away; at most 10 m";
+    return text::joined(name, " ") + " is " + std::to_string(point->norm()) + " m away; at most 10 m";
   return "";
 }
 
 /// NaN fails both comparisons, and is a defect.
 std::string width_defect(Name name, const std::optional<float>& width, float widest) {
   if (!width || (*width > 0.0f && *width <= widest)) return "";
-  return joined(name) + " " + std::to_string(*width) + " m is not in (0, " + std::to_string(widest) + "]";
+  return text::joined(name, " ") + " " + std::to_string(*width) + " m is not in (0, " +
+         std::to_string(widest) + "]";
 }
 
 std::string finger_defect(const HandJoints& hand, std::size_t finger) {
@@ -167,7 +165,8 @@ std::string finger_defect(const HandJoints& hand, std::size_t finger) {
     if (!joints[b] || !joints[b + 1]) continue;
     const double length = (*joints[b + 1] - *joints[b]).norm();
     if (length > kMaxBoneLength)
-      return joined({name, kBoneNames[b]}) + " is " + std::to_string(length) + " m long; at most 0.3 m";
+      return text::joined({name, kBoneNames[b]}, " ") + " is " + std::to_string(length) +
+             " m long; at most 0.3 m";
   }
   return width_defect({name, "width"}, hand.finger_width[finger], kMaxFingerWidth);
 }

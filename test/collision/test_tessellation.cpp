@@ -29,7 +29,7 @@ TEST(FlatFaces, a_box_has_six_however_it_is_cut) {
       SCOPED_TRACE(n);
       TriangleMesh mesh = tessellated_box(kHalf, n);
       if (as_in_a_file) mesh = in_floats(testing::turned(mesh, kTurn));
-      const FlatFaces flat = flat_faces(mesh);
+      const FlatFaces flat = merge_coplanar_triangles(mesh);
       EXPECT_EQ(flat.faces.size(), 6u);
       EXPECT_EQ(flat.edges.size(), 12u);
       EXPECT_EQ(flat.corners.size(), 8u);
@@ -40,7 +40,7 @@ TEST(FlatFaces, a_box_has_six_however_it_is_cut) {
 }
 
 TEST(FlatFaces, a_can_has_two_caps_and_its_sides) {
-  const FlatFaces flat = flat_faces(in_floats(tessellated_can(0.033, 0.06, 71, 40, 20)));
+  const FlatFaces flat = merge_coplanar_triangles(in_floats(tessellated_can(0.033, 0.06, 71, 40, 20)));
   EXPECT_EQ(flat.faces.size(), 73u);
   EXPECT_EQ(flat.edges.size(), 3u * 71u);
   EXPECT_EQ(flat.corners.size(), 2u * 71u);
@@ -48,7 +48,7 @@ TEST(FlatFaces, a_can_has_two_caps_and_its_sides) {
 
 TEST(FlatFaces, what_bends_everywhere_keeps_its_patches) {
   const TriangleMesh ring = in_floats(tessellated_ring(0.04, 0.015, 40));
-  const FlatFaces flat = flat_faces(ring);
+  const FlatFaces flat = merge_coplanar_triangles(ring);
   EXPECT_EQ(flat.faces.size(), 3200u);  // four-cornered: each is flat
   EXPECT_FALSE(MeshSurface(ring).convex());
 }
@@ -62,7 +62,7 @@ TEST(FlatFaces, triangles_of_no_area_belong_to_those_beside_them) {
   mesh.triangles[0] = {{cut[0], middle, cut[2]}};
   mesh.triangles.push_back({{middle, cut[1], cut[2]}});
   mesh.triangles.push_back({{cut[0], cut[1], middle}});
-  const FlatFaces flat = flat_faces(mesh);
+  const FlatFaces flat = merge_coplanar_triangles(mesh);
   EXPECT_EQ(flat.faces.size(), 6u);
   EXPECT_TRUE(flat.closed);
 }

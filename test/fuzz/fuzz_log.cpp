@@ -1,6 +1,7 @@
 // What a recording of a live run says of its world, and a change: the world's YAML, its URDF, the YAML beside
 // that, the change's YAML, a URDF that it may name. What is taken is simulated.
 #include "fuzz/target.h"
+#include "mr_hand_interaction/ros/package_paths.h"
 #include "record/record.h"
 #include "support/fixtures.h"
 
@@ -22,6 +23,7 @@ void change(const std::string& yaml, const RecordedFiles& files, LiveSimulation&
   fuzzing::require(!to_text(change).empty(), "a change can be told");
   fuzzing::require(to_yaml(change_from_yaml(to_yaml(change), files)) == to_yaml(change),
                    "a change is the same again after it has been read");
+  prepare(change, scene_options(simulation.simulation().configuration()));
   make(change, simulation);
 }
 
@@ -34,7 +36,7 @@ void replay(const std::vector<std::string>& parts) {
   static const std::string kAll = fuzzing::folder().file("log"), kScenes = kAll + "/scenes";
   fuzzing::folder().remove("log");
   std::filesystem::create_directories(kScenes);
-  LiveSimulation simulation(scene_of(world, configuration, kScenes), configuration);
+  LiveSimulation simulation(scene_of(world, scene_options(configuration), kScenes), configuration);
   for (const auto& entry : std::filesystem::directory_iterator(kAll))
     fuzzing::require(entry.path().filename() == "scenes", "nothing is written elsewhere");
   advance(simulation, 0);

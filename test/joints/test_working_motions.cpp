@@ -109,7 +109,7 @@ TEST(Hatch, stays_shut_while_its_latches_are_before_it) {
   options.motion = "open_hatch";
   SyntheticHand source(options);
   Configuration configuration;
-  Simulation simulation(testing::staged_scene(source.motion(), configuration, false), configuration);
+  Simulation simulation(testing::staged_scene(source.motion(), configuration), configuration);
   const auto hinge = static_cast<std::size_t>(*find_joint(simulation.scene(), "hatch_hinge"));
   double furthest = 0.0;
   while (source.next_run() == 0) {

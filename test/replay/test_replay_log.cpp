@@ -77,7 +77,8 @@ class Live {
     add(LogEntry::Kind::without_hands).time = until;
   }
 
-  void change(const Change& change) {
+  void change(Change change) {
+    prepare(change, scene_options(live_.simulation().configuration()));
     make(change, live_);
     note(change, live_, world_);
     ++sequence_;
@@ -368,7 +369,7 @@ TEST(ReplayLog, a_recording_has_the_scenes_meshes_and_no_other_file_that_the_urd
 
 TEST(ReplayLog, changes_keep_their_bits_as_text) {
   const Spawn spawn = box("a_box", {0.1, 1.0 / 3.0, -1e-17});
-  const Change read = change_from_yaml(to_yaml(Change(spawn)), files_of(spawn));
+  const Change read = change_from_yaml(to_yaml(Change(spawn)), {});
   const ObjectRequest& request = std::get<Spawn>(read).request;
   EXPECT_EQ(request.pose.position, spawn.request.pose.position);
   EXPECT_EQ(request.twist.angular, spawn.request.twist.angular);

@@ -5,6 +5,7 @@
 #include "simulation/grasp.h"
 #include "support/fixtures.h"
 #include "synthetic/performance.h"
+#include "training/operator_trial.h"
 
 namespace mrhi {
 namespace {
@@ -56,7 +57,8 @@ TEST(Events, of_every_motion_come_in_their_fixed_order_and_end_with_the_hand) {
     SyntheticHandOptions options;
     options.motion = name;
     SyntheticHand source(options);
-    Simulation simulation(testing::staged_scene(source.motion(), Configuration(), true), Configuration());
+    Simulation simulation(testing::staged_scene(source.motion(), Configuration(), stand_under),
+                          Configuration());
     Levels levels;
     Nanoseconds stamp = 0;
     while (source.next_run() == 0) {

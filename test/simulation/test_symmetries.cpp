@@ -5,6 +5,7 @@
 #include "support/fixtures.h"
 #include "support/posed_hand.h"
 #include "synthetic/performance.h"
+#include "training/operator_trial.h"
 
 /// Space has no place, direction or side of its own: a hand and its objects that are moved, turned or
 /// mirrored together do the same there.
@@ -67,7 +68,7 @@ std::vector<Pose> told(const Story& story, const Elsewhere& elsewhere, std::stri
   SyntheticHand source(options);
   Configuration configuration;
   configuration.contact_model = story.model;
-  Scene scene = testing::staged_scene(source.motion(), configuration, story.table);
+  Scene scene = testing::staged_scene(source.motion(), configuration, story.table ? stand_under : nullptr);
   scene.gravity = Vector3(0, 0, story.gravity);
   Simulation simulation(elsewhere.scene(scene), configuration);
   std::vector<Pose> poses;

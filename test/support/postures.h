@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mr_hand_interaction/synthetic/hand_skeleton.h"
+#include "mr_hand_interaction/tracking/hand_skeleton.h"
 
 namespace mrhi::testing {
 

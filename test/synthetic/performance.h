@@ -10,7 +10,6 @@
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
 #include "support/white_noise.h"
-#include "training/operator_trial.h"
 
 namespace mrhi::testing {
 
@@ -30,7 +29,7 @@ struct Staging {
   std::string side = "right";
   double gravity = 0.0;       // along world's z [m/s^2]
   double gravity_from = 0.0;  // when it sets in: none of the shipped objects stands on anything [s]
-  bool stand = false;         // a table under the object
+  Body (*stand)(const Body&) = nullptr;       // makes what the object stands on
   double rate = SyntheticHandOptions().rate;  // of the tracker [1/s]
   double noise = 0.0;                         // white, on every joint by itself, rms on an axis [m]
   double correlation = 0.0;                   // of that noise from one frame to the next
@@ -59,12 +58,13 @@ class BadTracker {
   double dropped_;
 };
 
-inline Scene staged_scene(const ScriptedMotion& motion, const Configuration& configuration, bool stand) {
+inline Scene staged_scene(const ScriptedMotion& motion, const Configuration& configuration,
+                          Body (*stand)(const Body&) = nullptr) {
   SceneOptions options;
   options.default_material = default_material(configuration);
   Scene scene = load_scene(find_scene_file(motion.scene, {"config/scenes"}), options);
   scene.bodies.at(0).start_twist = motion.object_twist;
-  if (stand) scene.bodies.push_back(stand_under(scene.bodies[0]));
+  if (stand != nullptr) scene.bodies.push_back(stand(scene.bodies[0]));
   return scene;
 }
 

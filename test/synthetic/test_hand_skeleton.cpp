@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "mr_hand_interaction/synthetic/hand_skeleton.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
+#include "mr_hand_interaction/tracking/hand_skeleton.h"
 
 namespace mrhi {
 namespace {

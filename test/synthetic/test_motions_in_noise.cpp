@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "synthetic/performance.h"
+#include "training/operator_trial.h"
 
 namespace mrhi {
 namespace {
@@ -37,7 +38,7 @@ TEST_P(GraspInNoise, holds_without_a_parameter_in_weightlessness) {
 TEST_P(GraspInNoise, holds_without_a_parameter_on_a_table) {
   Staging staging;
   staging.gravity = -9.81;
-  staging.stand = true;
+  staging.stand = stand_under;
   EXPECT_EQ(held(staging, 5), 5);
 }
 

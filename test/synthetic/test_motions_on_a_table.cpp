@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "synthetic/performance.h"
+#include "training/operator_trial.h"
 
 namespace mrhi {
 namespace {
@@ -14,7 +15,7 @@ constexpr double kDegrees = M_PI / 180.0;
 Staging on_a_table() {
   Staging staging;
   staging.gravity = -9.81;
-  staging.stand = true;
+  staging.stand = stand_under;
   return staging;
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "mr_hand_interaction/synthetic/hand_skeleton.h"
+#include "mr_hand_interaction/tracking/hand_skeleton.h"
 
 namespace mrhi {
 namespace {

@@ -85,7 +85,7 @@ inline Worked work_at(const Work& work, const Staging& staging) {
   Configuration configuration;
   configuration.contact_model = staging.model;
   configuration.gravity = Vector3::Zero();
-  const Scene scene = staged_scene(motion, configuration, false);
+  const Scene scene = staged_scene(motion, configuration);
   Simulation weightless(scene, configuration);
   configuration.gravity = Vector3(0.0, 0.0, staging.gravity);
   Simulation heavy(scene, configuration);

@@ -5,8 +5,8 @@
 
 #include "math/minimum_jerk.h"
 #include "mr_hand_interaction/simulation_state.h"
-#include "mr_hand_interaction/synthetic/hand_skeleton.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
+#include "mr_hand_interaction/tracking/hand_skeleton.h"
 #include "support/fixtures.h"
 #include "support/white_noise.h"
 #include "tracking/hand_filter.h"

@@ -13,7 +13,7 @@ Trial perform_as(const std::string& motion, const Task& task) {
   options.motion = motion;
   SyntheticHand source(options);
   const Configuration configuration;
-  Simulation simulation(testing::staged_scene(source.motion(), configuration, false), configuration);
+  Simulation simulation(testing::staged_scene(source.motion(), configuration), configuration);
   Trial trial(task);
   while (source.next_run() == 0) {
     const JointsFrame joints = source.next();

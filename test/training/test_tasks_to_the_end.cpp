@@ -4,6 +4,7 @@
 
 #include "mr_hand_interaction/response/contact_model.h"
 #include "synthetic/performance.h"
+#include "training/operator_trial.h"
 #include "training/trials.h"
 
 namespace mrhi {

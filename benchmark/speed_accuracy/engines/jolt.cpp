@@ -44,7 +44,7 @@ constexpr Setting kSettings[] = {
 };
 
 constexpr JPH::ObjectLayer kFixed = 0, kFree = 1, kHand = 2, kLayers = 3;
-constexpr JPH::uint kMostBodies = 4096, kMostPairs = 65536, kMostContacts = 32768;
+constexpr JPH::uint kMaxBodies = 4096, kMaxPairs = 65536, kMaxContacts = 32768;
 constexpr std::size_t kScratch = 64 << 20;  // [bytes]
 
 JPH::Vec3 to_jolt(const Vector3& v) {
@@ -85,7 +85,7 @@ class JoltEngine final : public Engine {
   static constexpr bool kHinges = true, kMeshes = true;
   JoltEngine(const Setting& setting, const World& world, double step)
       : setting_(setting), step_(static_cast<float>(step)), world_(started(world)) {
-    system_.Init(kMostBodies, 0, kMostPairs, kMostContacts, layers_.broad, filter_, layers_.pairs);
+    system_.Init(kMaxBodies, 0, kMaxPairs, kMaxContacts, layers_.broad, filter_, layers_.pairs);
     system_.SetGravity(to_jolt(world.gravity));
     JPH::PhysicsSettings settings;
     settings.mNumVelocitySteps = setting.velocity_steps;

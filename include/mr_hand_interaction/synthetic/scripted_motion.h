@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mr_hand_interaction/scene/scene.h"
-#include "mr_hand_interaction/synthetic/hand_skeleton.h"
+#include "mr_hand_interaction/tracking/hand_skeleton.h"
 
 namespace mrhi {
 

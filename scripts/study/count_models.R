@@ -1,4 +1,4 @@
-# Called by study/with_r.py: mixed_models.R CELLS.csv OUTPUT.csv. Counts: glmmTMB, Poisson or negative binomial, whichever
+# Called by study/with_r.py: count_models.R CELLS.csv OUTPUT.csv. Counts: glmmTMB, Poisson or negative binomial, whichever
 # has the lower AIC.
 suppressPackageStartupMessages({library(emmeans); library(glmmTMB)})
 options(contrasts = c("contr.sum", "contr.poly"))
