@@ -59,23 +59,21 @@ JointState start_state(const Joint& joint) {
   return state;
 }
 
-//     turns:   q' = a.(w_child - w_parent)
-//     slides:  q' = a.(v_child - v_parent - w_parent x (c_child - c_parent))
+//     q' = s.(v_child - v_parent - w_parent x (c_child - c_parent)) + a.(w_child - w_parent)
 //
-// with a the joint's axis in world, fixed in the parent. The state is the bodies' momenta, so a joint's
-// velocity follows from them.
+// with (s, a) the joint's unit twist in world axes, fixed in the parent; one of them is 0. The state is the
+// bodies' momenta, so a joint's velocity follows from them.
 double joint_velocity(const Scene& scene, std::size_t index, const std::vector<BodyState>& bodies) {
   const Joint& joint = scene.joints[index];
   const auto motion = [&](int body) {
     return body == Joint::kWorld ? Twist() : twist_of(scene.bodies[body], bodies[body]);
   };
   const auto pose = [&](int body) { return body == Joint::kWorld ? Pose() : bodies[body].pose; };
-  const Pose frame = pose(joint.parent) * joint.in_parent, child = pose(joint.child);
-  const Vector3 axis = frame.orientation * joint.axis;
+  const Twist unit = unit_twist(joint, pose(joint.parent).orientation * joint.in_parent.orientation);
   const Twist parent = motion(joint.parent), own = motion(joint.child);
-  if (joint.kind == JointKind::turning) return axis.dot(own.angular - parent.angular);
-  const Vector3 carried = parent.linear + parent.angular.cross(child.position - pose(joint.parent).position);
-  return axis.dot(own.linear - carried);
+  const Vector3 arm = pose(joint.child).position - pose(joint.parent).position;
+  const Vector3 linear = own.linear - (parent.linear + parent.angular.cross(arm));
+  return unit.linear.dot(linear) + unit.angular.dot(own.angular - parent.angular);
 }
 
 // Uses the position after the flight: a position passed and left within a step is not reported.

@@ -69,7 +69,7 @@ void LinkageMotion::place(const Pose& root, const Vector& positions) {
                                                                : Pose();
       const Pose frame = parent * on.in_parent;
       const double position = positions[i - (linkage_.floats() ? 1 : 0)];
-      placed.axis = frame.orientation * on.axis;
+      placed.unit = unit_twist(on, frame.orientation);
       placed.origin = frame.position;
       placed.pose = frame * joint_motion(on, position) * on.in_child.inverse();
       placed.pose.orientation.normalize();
@@ -79,9 +79,9 @@ void LinkageMotion::place(const Pose& root, const Vector& positions) {
   }
 }
 
-/// p += J' (impulse, moment): projects an impulse at the body's centre and a moment onto the joints, up the
-/// tree to the root. The component along a sliding axis a is a.P; about a turning one, at o, a.(L + (c - o) x
-/// P). A free root at r has (P, L + (c - r) x P): momenta of the unknowns are about its own centre.
+/// p += J' (P, L): projects an impulse P at the body's centre c and a moment L onto the joints, up the tree
+/// to the root. A joint at o with the unit twist S = (s, a) has s.P + a.(L + (c - o) x P). A free root at r
+/// has (P, L + (c - r) x P): momenta of the unknowns are about its own centre.
 void LinkageMotion::push(int body, const Vector3& impulse, const Vector3& moment,
                          Eigen::Ref<Vector> momenta) const {
   const Vector3& centre = at(body).pose.position;
@@ -89,10 +89,9 @@ void LinkageMotion::push(int body, const Vector3& impulse, const Vector3& moment
     if (linkage_.bodies[i].joint == LinkageBody::kNone) {
       momenta.segment<3>(0) += impulse;
       momenta.segment<3>(3) += moment + (centre - at(i).pose.position).cross(impulse);
-    } else if (joint(i).kind == JointKind::sliding) {
-      momenta[linkage_.column(i)] += at(i).axis.dot(impulse);
     } else {
-      momenta[linkage_.column(i)] += at(i).axis.dot(moment + (centre - at(i).origin).cross(impulse));
+      momenta[linkage_.column(i)] += at(i).unit.linear.dot(impulse) +
+                                     at(i).unit.angular.dot(moment + (centre - at(i).origin).cross(impulse));
     }
   }
 }
@@ -100,8 +99,7 @@ void LinkageMotion::push(int body, const Vector3& impulse, const Vector3& moment
 /// J of a body: the velocity of its centre and its angular velocity for unit velocity of one unknown.
 ///
 ///     root      v = v_r + w x (c - r)  = v_r - [c - r]x w        w
-///     slides    v = a q'                                         0
-///     turns     v = a x (c - o) q'                               a q'
+///     joint     v = (s + a x (c - o)) q'                         a q'
 ///
 /// Only joints between the body and the root move it; all other columns are 0. push() is the transpose.
 void LinkageMotion::add_jacobian(int body, Eigen::Ref<Matrix> rows) const {
@@ -111,11 +109,8 @@ void LinkageMotion::add_jacobian(int body, Eigen::Ref<Matrix> rows) const {
       rows.block<3, 3>(0, 0).setIdentity();
       rows.block<3, 3>(0, 3) = -cross_matrix(centre - at(i).pose.position);
       rows.block<3, 3>(3, 3).setIdentity();
-    } else if (joint(i).kind == JointKind::sliding) {
-      rows.block<3, 1>(0, linkage_.column(i)) = at(i).axis;
     } else {
-      rows.block<3, 1>(0, linkage_.column(i)) = at(i).axis.cross(centre - at(i).origin);
-      rows.block<3, 1>(3, linkage_.column(i)) = at(i).axis;
+      rows.col(linkage_.column(i)) << at(i).velocity_at(centre), at(i).unit.angular;
     }
   }
 }
@@ -150,8 +145,7 @@ void LinkageMotion::weigh() {
 
 /// From the root outwards: each body moves with its parent, and by its joint.
 ///
-///     w = w_p + q' a,     v = v_p + w_p x (c - c_p) + q' a x (c - o)            turns
-///     w = w_p,            v = v_p + w_p x (c - c_p) + q' a                      slides
+///     w = w_p + q' a,     v = v_p + w_p x (c - c_p) + q' (s + a x (c - o))
 void LinkageMotion::move(const Vector& velocity) {
   for (int i = 0; i < size(); ++i) {
     Placed& placed = placed_[i];
@@ -168,25 +162,21 @@ void LinkageMotion::move(const Vector& velocity) {
       placed.linear = parent.linear + parent.angular.cross(placed.pose.position - parent.pose.position);
     }
     const double speed = velocity[linkage_.column(i)];
-    if (joint(i).kind == JointKind::sliding) {
-      placed.linear += speed * placed.axis;
-    } else {
-      placed.angular += speed * placed.axis;
-      placed.linear += speed * placed.axis.cross(placed.pose.position - placed.origin);
-    }
+    placed.angular += speed * placed.unit.angular;
+    placed.linear += speed * placed.velocity_at(placed.pose.position);
   }
 }
 
-/// Newton's and Euler's laws of a joint's subtree, along or about the joint, from which reaction forces drop
-/// out. About a point o of the parent, dH/dt = moment - v_o x P.
+/// Newton's and Euler's laws of a joint's subtree, along the joint's unit twist (s, a), from which reaction
+/// forces drop out. About a point o of the parent, dH/dt = moment - v_o x P.
 ///
-///     turns    p = a.H,   H = sum L_b + (c_b - o) x P_b   p' = a'.H + a.(sum (c_b - o) x m_b g - v_o x P)
-///     slides   p = a.P,   P = sum P_b                     p' = a'.P + m a.g
+///     p  = s.P + a.H,      P = sum P_b,      H = sum L_b + (c_b - o) x P_b
+///     p' = s'.P + a'.H + m s.g + a.(sum (c_b - o) x m_b g - v_o x P)
 ///
-/// over the subtree, with a' = w_parent x a and v_o the velocity of the joint's point in the parent. The
-/// joint's reaction has no component along a. This is -dH/dq of Hamilton's equations without derivatives of
-/// M. Sums are about the world's origin, so a subtree's is added to its parent's unchanged; H_o = H_0 - o x P
-/// moves it to o.
+/// over the subtree, with (s, a)' = w_parent x (s, a) and v_o the velocity of the joint's point in the
+/// parent. The joint's reaction does no work along S. This is -dH/dq of Hamilton's equations without
+/// derivatives of M. Sums are about the world's origin, so a subtree's is added to its parent's unchanged;
+/// H_o = H_0 - o x P moves it to o.
 void LinkageMotion::find_rates(const Vector3& gravity, Vector& rates) {
   for (int i = size() - 1; i >= 0; --i) {
     const Placed& placed = placed_[i];
@@ -213,15 +203,12 @@ void LinkageMotion::find_rates(const Vector3& gravity, Vector& rates) {
       turning = parent.angular;
       velocity = parent.linear + parent.angular.cross(placed.origin - parent.pose.position);
     }
-    const Vector3 axis_rate = turning.cross(placed.axis);
-    const int row = linkage_.column(i) - (linkage_.floats() ? 6 : 0);
-    if (joint(i).kind == JointKind::sliding) {
-      rates[row] = axis_rate.dot(carried.momentum) + carried.mass * placed.axis.dot(gravity);
-    } else {
-      const Vector3 about = carried.angular_momentum - placed.origin.cross(carried.momentum);
-      const Vector3 moment = (carried.mass_moment - carried.mass * placed.origin).cross(gravity);
-      rates[row] = axis_rate.dot(about) + placed.axis.dot(moment - velocity.cross(carried.momentum));
-    }
+    const Vector3 &along = placed.unit.linear, &axis = placed.unit.angular;
+    const Vector3 about = carried.angular_momentum - placed.origin.cross(carried.momentum);
+    const Vector3 moment = (carried.mass_moment - carried.mass * placed.origin).cross(gravity);
+    const double by_axes = turning.cross(along).dot(carried.momentum) + turning.cross(axis).dot(about);
+    rates[linkage_.column(i) - (linkage_.floats() ? 6 : 0)] =
+        by_axes + (carried.mass * along.dot(gravity) + axis.dot(moment - velocity.cross(carried.momentum)));
   }
 }
 

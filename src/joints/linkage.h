@@ -41,9 +41,12 @@ class LinkageMotion {
   using Vector = Eigen::VectorXd;
   struct Placed {
     Pose pose;                // of the body
-    Vector3 axis, origin;     // of its joint, world
+    Twist unit;               // of its joint, world axes: twist at `origin` for unit velocity
+    Vector3 origin;           // of its joint, world
     Matrix3 inertia;          // world axes
     Vector3 linear, angular;  // velocity
+    /// Velocity of a point of the body for unit velocity of its joint alone.
+    Vector3 velocity_at(const Vector3& p) const { return unit.linear + unit.angular.cross(p - origin); }
   };
 
   LinkageMotion(const Scene& scene, const Linkage& linkage);

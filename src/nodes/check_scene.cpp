@@ -51,10 +51,9 @@ void print(const std::string& file, const Scene& scene) {
                 body.shapes.size(), body.material.static_friction, body.material.restitution);
   }
   for (const Joint& joint : scene.joints)
-    std::printf("  joint %-18s %s '%s', %s to %s %s\n", joint.name.c_str(),
-                joint.kind == JointKind::turning ? "turns" : "slides", scene.bodies[joint.child].name.c_str(),
-                text::number(joint.lower).c_str(), text::number(joint.upper).c_str(),
-                joint.kind == JointKind::turning ? "rad" : "m");
+    std::printf("  joint %-18s of '%s', %s, %s to %s %s\n", joint.name.c_str(),
+                scene.bodies[joint.child].name.c_str(), joint.kind_name(), text::number(joint.lower).c_str(),
+                text::number(joint.upper).c_str(), joint.unit());
   for (const std::string& warning : scene.warnings) std::printf("  warning: %s\n", warning.c_str());
 }
 

@@ -161,9 +161,7 @@ void ResultWriter::write_bodies(double time) {
            << half_extents(body);
     const Joint* joint = joint_of(*scene_, static_cast<int>(i));
     if (joint == nullptr) bodies.skip(4);
-    if (joint != nullptr)
-      bodies << joint->name << (joint->kind == JointKind::turning ? "turning" : "sliding") << joint->lower
-             << joint->upper;
+    if (joint != nullptr) bodies << joint->name << joint->kind_name() << joint->lower << joint->upper;
     bodies << frame_;
     bodies.end_row();
   }

@@ -6,12 +6,6 @@
 namespace mrhi {
 namespace {
 
-/// Largest speed of any point of a linkage at rest [m/s]: a tenth of the speed below which a body may sleep
-/// (simulation/sleeping.cpp).
-constexpr double kSleepSpeed = 1e-6;
-/// Time at rest after which a linkage sleeps [s].
-constexpr double kSleepDelay = 0.5;
-
 bool has(const Island& island, int body) {
   return island.place_of(static_cast<std::size_t>(body)) >= 0;
 }
@@ -46,25 +40,10 @@ void JointedModel::respond(ContactStep& step) {
   std::fill(awake_.begin(), awake_.end(), char(0));
   std::fill(solved_.begin(), solved_.end(), char(0));
   for (const Island& island : islands_.with_joints()) {
-    if (!sleeps(step, island)) respond(step, island);
+    if (!state_.asleep[island.bodies.first->body]) respond(step, island);
   }
   end_contacts(step);
   fly(step);
-}
-
-/// True if the island has been at rest for kSleepDelay and no force has acted since.
-bool JointedModel::sleeps(const ContactStep& step, const Island& island) const {
-  if (!configuration_.sleep || is_touched(step, island)) return false;
-  const auto moves = [&](const IslandBody& body) {
-    const BodyState& state = step.bodies[body.body];
-    return !state.linear_momentum.isZero(0.0) || !state.angular_momentum.isZero(0.0);
-  };
-  if (std::any_of(island.bodies.begin(), island.bodies.end(), moves)) return false;
-  for (std::size_t i = 0; i < linkages_.size(); ++i) {
-    if (!has(island, groups_[i].front())) continue;
-    return state_.joints[static_cast<std::size_t>(linkages_[i].bodies.back().joint)].still >= kSleepDelay;
-  }
-  return false;
 }
 
 /// Places a linkage by its joint positions, and computes its mass matrix.
@@ -104,48 +83,15 @@ void JointedModel::respond(ContactStep& step, const Island& island) {
 }
 
 void JointedModel::fly(const ContactStep& step) {
-  for (BodyContact& contact : step.body_contacts) {
-    // Objects on jointed bodies do not sleep.
-    if (!scene_.bodies[contact.key.b].flies ||
-        (!scene_.bodies[contact.key.a].fixed && !scene_.bodies[contact.key.a].flies))
-      contact.still = 0.0;
-  }
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
     if (!awake_[i]) continue;
     // If the island was solved, its momenta already include gravity.
     flights_[i].fly(solved_[i] ? Vector3(Vector3::Zero()) : step.gravity, step.step, state_.joints,
                     step.bodies);
-    rest(step, i);
     for (const LinkageBody& link : linkages_[i].bodies) {
       step.changes.forget(link.body);
       if (link.joint != LinkageBody::kNone) note(static_cast<std::size_t>(link.joint));
     }
-  }
-}
-
-/// Puts a linkage to sleep. Only one that its own forces hold may come to rest: free motion continues,
-/// however slow.
-///
-///     |v| + R |w| < 1 um/s of all its bodies, R the bounding radius, for half a second
-void JointedModel::rest(const ContactStep& step, std::size_t linkage) {
-  bool still = solved_[linkage] && !linkages_[linkage].floats();
-  for (const LinkageBody& link : linkages_[linkage].bodies) {
-    const auto b = static_cast<std::size_t>(link.body);
-    const Twist twist = twist_of(scene_.bodies[b], step.bodies[b]);
-    still =
-        still && twist.linear.norm() + scene_.bodies[b].bounding_radius * twist.angular.norm() < kSleepSpeed;
-  }
-  bool sleeps = still;
-  for (const LinkageBody& link : linkages_[linkage].bodies) {
-    if (link.joint == LinkageBody::kNone) continue;
-    double& lasted = state_.joints[static_cast<std::size_t>(link.joint)].still;
-    lasted = still ? lasted + step.step : 0.0;
-    sleeps = sleeps && lasted >= kSleepDelay;
-  }
-  if (!sleeps) return;
-  for (const int body : groups_[linkage]) {
-    step.bodies[static_cast<std::size_t>(body)].linear_momentum.setZero();
-    step.bodies[static_cast<std::size_t>(body)].angular_momentum.setZero();
   }
 }
 

@@ -21,11 +21,9 @@ class JointedModel : public ImplicitModel {
   void respond(ContactStep& step) override;
 
  private:
-  bool sleeps(const ContactStep& step, const Island& island) const;
   void place(const ContactStep& step, std::size_t linkage);
   void respond(ContactStep& step, const Island& island);
   void fly(const ContactStep& step);
-  void rest(const ContactStep& step, std::size_t linkage);
   void note(std::size_t joint);
 
   const Scene& scene_;

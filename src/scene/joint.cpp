@@ -124,9 +124,16 @@ const Joint* joint_of(const Scene& scene, int body) {
   return found == scene.joints.end() ? nullptr : &*found;
 }
 
+// S = (a, 0) of a sliding joint, (0, a) of a turning one.
+Twist unit_twist(const Joint& joint, const Quaternion& frame) {
+  const Vector3 axis = frame * joint.axis, none = Vector3::Zero();
+  return joint.turns() ? Twist{none, axis} : Twist{axis, none};
+}
+
+// exp(q S)
 Pose joint_motion(const Joint& joint, double position) {
-  if (joint.kind == JointKind::sliding) return {position * joint.axis, Quaternion::Identity()};
-  return {Vector3::Zero(), Quaternion(Eigen::AngleAxisd(position, joint.axis))};
+  if (joint.turns()) return {Vector3::Zero(), Quaternion(Eigen::AngleAxisd(position, joint.axis))};
+  return {position * joint.axis, Quaternion::Identity()};
 }
 
 void arrange_joints(Scene& scene) {

@@ -158,14 +158,13 @@ class Writer {
 
   void write_joint(const Joint& joint) {
     const Body& child = scene_.bodies[joint.child];
-    const bool turns = joint.kind == JointKind::turning;
-    const char* type = !turns ? "prismatic" : joint.is_limited() ? "revolute" : "continuous";
+    const char* type = !joint.turns() ? "prismatic" : joint.is_limited() ? "revolute" : "continuous";
     std::string more = "    <axis xyz=\"" + numbers(joint.axis) + "\"/>\n";
     const auto finite = [](double limit) {
       return text::exact(
           std::min(std::max(limit, joint_ranges::kCoordinate.min), joint_ranges::kCoordinate.max));
     };
-    if (joint.is_limited() || !turns)
+    if (joint.is_limited() || !joint.turns())
       more += "    <limit lower=\"" + finite(joint.lower) + "\" upper=\"" + finite(joint.upper) +
               "\" effort=\"0\" velocity=\"0\"/>\n";
     more += "    <dynamics damping=\"" + text::exact(joint.damping) + "\" friction=\"" +

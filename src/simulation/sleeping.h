@@ -7,8 +7,9 @@
 
 namespace mrhi {
 
-/// Sleep of bodies at rest on others: they cost nothing until a hand or a moving body may come near. A body
-/// without contacts never sleeps, however slowly it drifts.
+/// Sleep of bodies at rest on others, or on joints that hold: they cost nothing until a hand or a moving body
+/// may come near. A body that nothing holds never sleeps, however slowly it drifts. A linkage sleeps as a
+/// whole.
 class Sleeping {
  public:
   /// Keeps a reference.
@@ -20,9 +21,14 @@ class Sleeping {
   void settle(const Neighbours& neighbours, double step, SimulationState& state);
 
  private:
-  bool still(std::size_t body, const BodyState& state) const;
+  bool still(int body, const SimulationState& state) const;
   bool count_rest(double step, SimulationState& state) const;
   void find_tired(const Neighbours& neighbours, double step, const SimulationState& state);
+  void follow_joints(const SimulationState& state);
+  bool clear_connected(const Neighbours& neighbours, double step, const std::vector<BodyState>& bodies,
+                       const std::vector<char>* ignored, std::vector<char>& flags) const;
+  /// True for the world and for fixtures.
+  bool is_ground(int body) const { return body == Joint::kWorld || scene_.bodies[body].fixed; }
 
   const Scene& scene_;
   bool allowed_;

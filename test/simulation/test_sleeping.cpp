@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "support/fixtures.h"
+#include "support/joints.h"
 
 namespace mrhi {
 namespace {
@@ -168,6 +168,76 @@ TEST(Sleeping, a_ball_that_rolls_a_millimetre_a_second_is_not_put_to_rest) {
   played.run(5.0);
   EXPECT_FALSE(played.asleep(1));
   EXPECT_NEAR(played.place(1).x(), 5.0 * kSpeed, 0.02 * 5.0 * kSpeed);
+}
+
+/// A drawer with friction, on the world, and a cube in it.
+Scene drawer_with_cube() {
+  Body drawer = box_body(Vector3(0.3, 0.3, 0.02), 1.0);
+  drawer.name = "drawer";
+  Scene scene = testing::scene_of(drawer);
+  scene.gravity = Vector3(0, 0, -9.81);
+  scene.bodies.push_back(block("cube", Vector3(0.05, 0, 0.01 + 0.5 * kCube)));
+  scene.joints.push_back(testing::hinge(Joint::kWorld, 0, Pose(), Pose()));
+  scene.joints[0].kind = JointKind::sliding;
+  scene.joints[0].axis = Vector3::UnitX();
+  scene.joints[0].friction = 0.5;
+  return scene;
+}
+
+TEST(Sleeping, a_drawer_and_what_is_in_it_sleep_until_the_drawer_is_pushed) {
+  Played sleeping(drawer_with_cube(), true), awake(drawer_with_cube(), false);
+  const auto push = [](double t) {
+    const Vector3 tip(-0.3 + 0.1 * std::max(t - 1.0, 0.0), 0, 0);  // at the drawer after 2.42 s
+    return std::vector<Hand>{finger(tip - Vector3(0.03, 0, 0), tip, 0.008)};
+  };
+  sleeping.run(1.5, push);
+  awake.run(1.5, push);
+  EXPECT_TRUE(sleeping.asleep(0) && sleeping.asleep(1));
+  sleeping.run(3.0, push);
+  awake.run(3.0, push);
+  EXPECT_GT(awake.place(1).x(), 0.08);
+  for (const std::size_t body : {0u, 1u})
+    EXPECT_LT((sleeping.place(body) - awake.place(body)).norm(), 1e-6) << body;
+}
+
+TEST(Sleeping, a_box_sleeps_on_a_table_with_its_lid) {
+  Scene scene = standing_cubes();
+  scene.bodies.resize(1);
+  Body lid = box_body(Vector3(0.1, 0.05, 0.02), 0.1), box = box_body(Vector3(0.1, 0.05, 0.03), 0.2);
+  lid.start.position.z() = 0.0401;
+  scene.bodies.insert(scene.bodies.end(), {lid, box});
+  const Pose below{{-0.05, 0, -0.0125}, Quaternion::Identity()}, above{{-0.05, 0, 0.0125}, below.orientation};
+  scene.joints.push_back(testing::hinge(1, 2, below, above));
+  scene.joints[0].lower = -1e-3, scene.joints[0].upper = 1e-3;
+  Played played(scene, true);
+  played.run(2.0);
+  EXPECT_TRUE(played.asleep(1) && played.asleep(2));
+}
+
+TEST(Sleeping, a_linkage_wakes_as_a_whole) {
+  Scene scene = testing::pendulum(4, 0.0, 0.0);
+  for (Joint& joint : scene.joints) joint.friction = 0.05;
+  Played played(scene, true);
+  const auto all = [&](bool asleep) {
+    for (std::size_t body = 0; body < 4; ++body) EXPECT_EQ(played.asleep(body), asleep) << body;
+  };
+  played.run(1.0);
+  all(true);
+  const Vector3 tip = scene.bodies[3].start.position;  // far from the first rod
+  played.run(1.01, [&](double) { return std::vector<Hand>{finger(tip, tip + Vector3(0, 0.03, 0), 0.008)}; });
+  all(false);
+}
+
+TEST(Sleeping, a_linkage_that_floats_or_hangs_freely_is_never_put_to_rest) {
+  Scene floats = testing::pendulum(2, 0.0, 0.0), hangs = testing::pendulum(2, 1e-7, 9.81);
+  floats.joints.erase(floats.joints.begin());
+  for (Scene* scene : {&floats, &hangs}) scene->joints.back().friction = 0.05;
+  floats.bodies[0].start_twist.linear = Vector3(1e-7, 0, 0);
+  for (const Scene& scene : {floats, hangs}) {
+    Played played(scene, true);
+    played.run(3.0);
+    EXPECT_FALSE(played.asleep(0) || played.asleep(1));
+  }
 }
 
 TEST(Sleeping, a_copied_sleeper_wakes_with_the_same_bits) {

@@ -35,7 +35,7 @@ struct JointState {
   double anchor = 0.0;       ///< anchor of friction [rad]
   double pushed = 0.0;       ///< acceleration by forces in the last step: warm start of the next [rad/s^2]
   double effort = 0.0;       ///< of the joint's own forces in the last step [N m]
-  double still = 0.0;        ///< time for which its linkage has been nearly at rest [s]
+  double still = 0.0;        ///< time for which both its bodies have been still [s]
   std::uint8_t detent = 0;   ///< index in Detents::at of the present detent
   std::int8_t at_limit = 0;  ///< -1: at the lower one, 1: at the upper one
   bool latched = false;      ///< within the latch's capture range

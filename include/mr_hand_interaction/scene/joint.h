@@ -59,7 +59,13 @@ struct Joint {
   std::optional<Latch> latch;
 
   bool is_limited() const { return lower > -kUnlimited || upper < kUnlimited; }
+  bool turns() const { return kind == JointKind::turning; }
+  const char* kind_name() const { return turns() ? "turning" : "sliding"; }
+  const char* unit() const { return turns() ? "rad" : "m"; }  ///< of its position
 };
+
+/// Motion subspace: twist of the joint's frame, which has this orientation, for unit velocity of the joint.
+Twist unit_twist(const Joint& joint, const Quaternion& frame);
 
 /// Pose of the joint's frame, which is the child's link frame, relative to its pose at position 0.
 Pose joint_motion(const Joint& joint, double position);
