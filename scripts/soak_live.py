@@ -1,10 +1,14 @@
 #!/usr/bin/python3
-"""Records a scripted hand and plays it in a loop through the nodes for hours of its own time: memory, open files and
-the steps' 99th percentile of the node, ten times on the way. Exits with 1 if any grows after the first of them."""
+"""Records a scripted hand and plays it in a loop through the nodes, at ten times its speed, for hours. Prints memory and
+open files of the node, the log's size and the 99th percentile of step times, and exits with 1 if any of them grows after the
+first tenth of the time."""
+import collections
 import functools
+import math
 import os
 import shutil
 import signal
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -17,10 +21,13 @@ from diagnostic_msgs.msg import DiagnosticArray
 from mr_hand_interaction.msg import ObjectStateArray
 
 RATE = 10
-LOOKS = 10
-NODE = "/interaction_node"  # from the tracker's message to the picture, as playback.launch has it
-MOST_MEMORY, MOST_TIME = 1.05, 1.5  # ratio to the first check; times vary with the machine's load
+NODE = "/interaction_node"  # from the tracker's message to the markers, as playback.launch has it
+LOOK = 30.0  # [s] between two checks
+MAX_MEMORY, MAX_TIME = 1.05, 1.5  # ratio to the maximum of the first tenth; times vary with the machine's load
+MAX_LOG = 130000  # bytes an hour: for each of up to three reasons why frames are lost, a line of 0.7 kB a minute
 PAGE = os.sysconf("SC_PAGE_SIZE") / 1048576.0
+
+Look = collections.namedtuple("Look", "minutes memory files log")
 
 
 def end(process):
@@ -33,10 +40,12 @@ def soak(scenario):
     """Calls scenario(hours, folder, start) beside a master and prints whether nothing grew. Ends the programs that it started,
     the last first. Returns the exit status."""
     folder, running = tempfile.mkdtemp(), []
-    os.environ["ROS_LOG_DIR"] = os.path.join(folder, "log")
+    os.environ["ROS_LOG_DIR"] = log = os.path.join(folder, "log")
+    os.mkdir(log)
 
     def start(*command):
-        running.insert(0, subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
+        with open(os.path.join(log, "screen"), "a", encoding="utf-8") as screen:
+            running.insert(0, subprocess.Popen(command, start_new_session=True, stdout=screen, stderr=screen))
         return running[0]
     try:
         start("roscore", "-p", os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/"))
@@ -63,6 +72,32 @@ def memory_and_files(node):
         return [int(statm.read().split()[1]) * PAGE, len(os.listdir(process + "fd"))]
 
 
+def log_bytes():
+    files = (os.path.join(path, name) for path, _, names in os.walk(os.environ["ROS_LOG_DIR"]) for name in names)
+    return sum(map(os.path.getsize, files))
+
+
+def looks(hours, *nodes):
+    """Yields a look at the nodes every 30 s for `hours`, at least ten: memory and open files of each, and the size of
+    the log and of all that was printed."""
+    begin = time.monotonic()
+    while time.monotonic() < begin + 3600 * hours:
+        time.sleep(min(LOOK, 360 * hours))
+        memory, files = zip(*map(memory_and_files, nodes))
+        yield Look((time.monotonic() - begin) / 60, memory, files, log_bytes())
+
+
+def is_bounded(values, ratio, more=0):
+    """True if no value exceeds the maximum of the first tenth, times `ratio`, plus `more`."""
+    return max(values) <= ratio * max(values[:max(1, len(values) // 10)]) + more
+
+
+def is_flat(seen, hours):
+    return (all(is_bounded(memory, MAX_MEMORY) for memory in zip(*(look.memory for look in seen))) and
+            all(is_bounded(files, 1) for files in zip(*(look.files for look in seen))) and
+            is_bounded([look.log for look in seen], 1, MAX_LOG * max(hours, 0.1)))
+
+
 def record(bag, start):
     """Two runs of the hand, with what comes before and after."""
     recorder = start("rosbag", "record", "-O", bag, "/leap_motion/leap_device")
@@ -70,12 +105,6 @@ def record(bag, start):
     time.sleep(25)  # the hand plays in real time
     end(hand)
     end(recorder)
-
-
-class Look:
-    def __init__(self, p99):
-        self.p99 = p99
-        self.memory, self.files = memory_and_files(NODE)
 
 
 class Live:
@@ -95,26 +124,21 @@ class Live:
         self.last = message.header.stamp
         self.stamps += 1
 
-    def look(self):
-        times, self.p99 = sorted(self.p99), []
-        return Look(times[len(times) // 2] if times else 0.0)
-
-
-def flat(looks):
-    first = looks[0]
-    return all(look.memory < MOST_MEMORY * first.memory and look.files <= first.files and
-               look.p99 < MOST_TIME * first.p99 for look in looks)
+    def take_p99(self):
+        """Median since the last call [us]."""
+        times, self.p99 = self.p99, []
+        return statistics.median(times) if times else math.nan
 
 
 def watch(hours):
-    live, looks = Live(), []
-    print("%6s %8s %8s %6s %8s" % ("look", "loops", "MiB", "files", "p99/us"))
-    for number in range(1, LOOKS + 1):
-        time.sleep(hours * 3600 / RATE / LOOKS)
-        looks.append(live.look())
-        print("%6d %8d %8.2f %6d %8.1f" % (number, live.loops, looks[-1].memory, looks[-1].files, looks[-1].p99),
+    live, seen, times = Live(), [], []
+    print("%6s %8s %8s %6s %9s %8s" % ("min", "loops", "MiB", "files", "log/bytes", "p99/us"))
+    for look in looks(hours, NODE):
+        seen.append(look)
+        times.append(live.take_p99())
+        print("%6.1f %8d %8.2f %6d %9d %8.1f" % (look.minutes, live.loops, *look.memory, *look.files, look.log, times[-1]),
               flush=True)
-    return flat(looks) and live.loops > 0
+    return is_flat(seen, hours) and is_bounded(times, MAX_TIME) and live.loops > 0
 
 
 def loop(hours, folder, start):

@@ -17,14 +17,11 @@ import aiohttp
 import rospy
 from mr_hand_interaction.msg import InteractionEvent
 
-from soak_live import memory_and_files, soak
+from soak_live import is_flat, looks, soak
 
 RATE = 60
 VISIT = 10.0  # [s] that the third browser stays
-LOOK = 30.0  # [s] between two checks
 NODES = ('/web_door', '/interaction_node')
-GROWTH = 1.05  # largest ratio of memory to its maximum in the first tenth
-LOG_GROWTH = 100000  # bytes an hour, the same: for each of up to three reasons why frames are lost, a line a minute
 FINGERS = ('thumb', 'index', 'middle', 'ring', 'pinky')
 RADIUS = 0.008  # [m]
 ABSENT = 25 * [math.nan, math.nan, math.nan, math.nan]
@@ -102,35 +99,19 @@ class Browsers:
             self.visits += 1
 
 
-def log_bytes(folder):
-    return sum(os.path.getsize(os.path.join(path, name)) for path, _, names in os.walk(folder) for name in names)
-
-
-def is_flat(looks, hours):
-    first = looks[:max(1, len(looks) // 10)]
-    allowed = [max(look[i] for look in first) for i in range(len(first[0]))]
-    for look in looks:
-        memory, files = look[0:4:2], look[1:4:2]
-        if any(now >= GROWTH * then for now, then in zip(memory, allowed[0:4:2])) or \
-                any(now > then for now, then in zip(files, allowed[1:4:2])):
-            return False
-    return looks[-1][4] - allowed[4] <= LOG_GROWTH * max(hours, 0.1)
-
-
-def watch(hours, browsers, logs, grasps):
-    looks, end = [], time.monotonic() + 3600 * hours
+def watch(hours, browsers, grasps):
+    seen = []
     print('%6s %9s %6s %9s %6s %9s %8s %8s %7s %7s' % ('min', 'door/MiB', 'files', 'node/MiB', 'files', 'log/bytes', 'hands',
                                                        'frames', 'visits', 'grasps'))
-    while time.monotonic() < end:
-        time.sleep(min(LOOK, 360 * hours))
-        looks.append([number for node in NODES for number in memory_and_files(node)] + [log_bytes(logs)])
-        print('%6.1f %9.2f %6d %9.2f %6d %9d %8d %8d %7d %7d' % ((hours * 3600 - end + time.monotonic()) / 60, *looks[-1],
-                                                                 browsers.sent, browsers.frames, browsers.visits, len(grasps)),
-              flush=True)
+    for look in looks(hours, *NODES):
+        seen.append(look)
+        door, node = zip(look.memory, look.files)
+        print('%6.1f %9.2f %6d %9.2f %6d %9d %8d %8d %7d %7d' % (look.minutes, *door, *node, look.log, browsers.sent,
+                                                                 browsers.frames, browsers.visits, len(grasps)), flush=True)
         if not browsers.thread.is_alive():
             print('a browser was refused')
             return False
-    return is_flat(looks, hours) and bool(grasps)
+    return is_flat(seen, hours) and bool(grasps)
 
 
 def wait_for(holds, what):
@@ -157,7 +138,7 @@ def browse(hours, folder, start):
                      lambda event: event.kind == InteractionEvent.GRASP_BEGIN and grasps.append(event.header.stamp))
     wait_for(lambda: listens(port), 'the door')
     browsers = Browsers(port, scripted_hand(folder))
-    flat = watch(hours, browsers, os.path.join(folder, 'log'), grasps)
+    flat = watch(hours, browsers, grasps)
     browsers.over = True
     browsers.thread.join(30)
     return flat

@@ -49,6 +49,7 @@ LinkageMotion::LinkageMotion(const Scene& scene, const Linkage& linkage)
       placed_(linkage.bodies.size()),
       mass_(Matrix::Zero(linkage.unknowns(), linkage.unknowns())),
       factors_(linkage.unknowns()),
+      composites_(linkage.bodies.size()),
       carried_(linkage.bodies.size()) {
   for (int i = 0; i < size(); ++i) total_mass_ += body(i).mass;
 }
@@ -115,31 +116,51 @@ void LinkageMotion::add_jacobian(int body, Eigen::Ref<Matrix> rows) const {
   }
 }
 
-/// M = sum J_b' diag(m_b, I_b) J_b, column by column: the momenta for unit velocity of each unknown
-/// (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 6).
+/// Joins the second of two bodies that do not move against each other to the first.
 ///
-///     M_ij = sum over b of m_b v_bi.v_bj + w_bi.I_b w_bj            v_bi, w_bi: column i of J_b
+///     c = (m_1 c_1 + m_2 c_2) / m,     I = I_1 + I_2 + m_1 m_2 / m (d.d 1 - d d'),     d = c_2 - c_1
+void LinkageMotion::Composite::join(const Composite& other) {
+  const Vector3 between = other.centre - centre;
+  const double ratio = other.mass / (mass + other.mass);
+  inertia += other.inertia;
+  inertia += (ratio * mass) * (between.squaredNorm() * Matrix3::Identity() - between * between.transpose());
+  centre += ratio * between;
+  mass += other.mass;
+}
+
+/// M by the composite rigid body algorithm (Featherstone, Rigid Body Dynamics Algorithms, 2008, 6.2): a
+/// column is the momenta for unit velocity of its unknown, which moves a body and all below it as one rigid
+/// body of mass m and inertia I.
 ///
-/// The sum over bodies costs their number times more than that chapter's composite rigid body algorithm, but
-/// is as plain as the law. M is positive definite: every unknown moves mass, and joints form a tree. Entries
-/// above the diagonal are copies, so M is exactly symmetric.
+///     P = m v,     L = I w + r x P            v of its centre, which is at r from the body's
+///
+/// M is positive definite: every unknown moves mass, and joints form a tree. Entries below the diagonal are
+/// copies, so M is exactly symmetric.
 void LinkageMotion::weigh() {
   mass_.setZero();
-  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6 + 256> rows(6, mass_.cols());
-  for (int b = 0; b < size(); ++b) {
-    rows.setZero();
-    add_jacobian(b, rows);
-    const double mass = body(b).mass;
-    const Matrix3& inertia = at(b).inertia;
-    for (Eigen::Index j = 0; j < rows.cols(); ++j) {
-      const Vector3 linear = mass * rows.block<3, 1>(0, j), angular = inertia * rows.block<3, 1>(3, j);
-      for (Eigen::Index i = j; i < rows.cols(); ++i)
-        mass_(i, j) += rows.block<3, 1>(0, i).dot(linear) + rows.block<3, 1>(3, i).dot(angular);
+  for (int i = 0; i < size(); ++i) composites_[i] = {body(i).mass, at(i).pose.position, at(i).inertia};
+  for (int i = size() - 1; i >= 0; --i) {
+    const LinkageBody& link = linkage_.bodies[i];
+    const Placed& placed = at(i);
+    const Composite& moved = composites_[i];
+    if (link.parent != LinkageBody::kNone) composites_[link.parent].join(moved);
+    const Vector3 arm = moved.centre - placed.pose.position;
+    const auto fill = [&](int column, const Vector3& velocity, const Vector3& spin) {
+      const Vector3 impulse = moved.mass * velocity;
+      push(i, impulse, moved.inertia * spin + arm.cross(impulse), mass_.col(column));
+    };
+    if (link.joint == LinkageBody::kNone) {
+      for (int axis = 0; axis < 3; ++axis) {
+        fill(axis, Vector3::Unit(axis), Vector3::Zero());
+        fill(3 + axis, Vector3::Unit(axis).cross(arm), Vector3::Unit(axis));
+      }
+    } else if (joint(i).kind == JointKind::sliding) {
+      fill(linkage_.column(i), placed.axis, Vector3::Zero());
+    } else {
+      fill(linkage_.column(i), placed.axis.cross(moved.centre - placed.origin), placed.axis);
     }
   }
-  for (Eigen::Index j = 0; j < mass_.cols(); ++j) {
-    for (Eigen::Index i = 0; i < j; ++i) mass_(i, j) = mass_(j, i);
-  }
+  mass_.triangularView<Eigen::StrictlyLower>() = mass_.transpose();
   factors_.compute(mass_);
 }
 

@@ -82,6 +82,13 @@ class LinkageMotion {
   double total_mass_ = 0.0;
   Matrix mass_;
   Eigen::LLT<Matrix> factors_;
+  struct Composite {  // a body and all below it, as one rigid body
+    double mass;
+    Vector3 centre;
+    Matrix3 inertia;  // about the centre, world axes
+    void join(const Composite& other);
+  };
+  std::vector<Composite> composites_;
   struct Carried {  // by a joint, about the world's origin
     double mass;
     Vector3 momentum, angular_momentum, mass_moment;

@@ -10,7 +10,7 @@ namespace {
 /// power (fourth order).
 constexpr double kMaxPartAngle = 0.03;
 constexpr double kMaxParts = 1000.0;
-/// Budget of a step, about 5 ms: evaluations of the motion of a linkage of n bodies, times n^2; and the usual
+/// Budget of a step, about 1 ms: evaluations of the motion of a linkage of n bodies, times n^2; and the usual
 /// number of evaluations of a part.
 constexpr double kMaxWork = 60'000.0, kTypicalPartWork = 24.0;
 constexpr int kMinIterations = 4;
@@ -187,35 +187,39 @@ double LinkageFlight::energy(const Point& point, const Vector3& gravity) const {
   return 0.5 * twice - motion_.total_mass() * gravity.dot(motion_.centre_of_mass());
 }
 
+/// Writes the joints' momenta with all joints locked, at the same angular momentum, to next_. Returns the
+/// kinetic energy, the least of any motion here [J].
+double LinkageFlight::lock_joints() {
+  next_.momenta.setZero(now_.momenta.size());
+  if (!linkage_.floats()) return 0.0;
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << Vector3::Zero(), angular_momentum_;
+  twist = motion_.mass().topLeftCorner<6, 6>().ldlt().solve(twist);
+  next_.momenta = motion_.mass().bottomLeftCorner(now_.momenta.size(), 6) * twist;
+  return 0.5 * angular_momentum_.dot(twist.tail<3>());
+}
+
 /// Call after find_velocity(now_). A rotation too fast for its budget of parts may gain energy, or have no
-/// finite result. Joints are then slowed until no energy is gained. Without a finite result they stop where
-/// the step began.
+/// finite result. Joints are then slowed until no energy is gained.
 ///
 ///     T(s) = T_locked + s^2 (T - T_locked)      of momenta p_locked + s (p - p_locked)
 ///
-/// with p_locked the momenta of locked joints at the same angular momentum: no motion has less energy.
+/// with p_locked the momenta of locked joints. A result that is not finite, or where even locked joints have
+/// more energy than there was, is dropped: joints stop where the step began.
 void LinkageFlight::keep_to_energy(const Vector3& gravity, double before) {
   const double weight = motion_.total_mass() * gravity.dot(motion_.centre_of_mass());
   const double after = energy(now_, gravity), moving = after + weight;
   if (after - before <= kMaxGain * moving) return;  // false for NaN too
-  const bool lost = !std::isfinite(after) || !now_.positions.allFinite() || !root_.coeffs().allFinite();
-  if (lost) {
+  const double locked = lock_joints();
+  double ratio = (before + weight - locked) / (moving - locked);
+  if (!(ratio > 0.0) || !now_.positions.allFinite() || !root_.coeffs().allFinite()) {
     now_ = start_;
     root_ = start_root_;
     find_velocity(now_);
+    lock_joints();
+    ratio = 0.0;
   }
-  double locked = 0.0;
-  next_.momenta.setZero(now_.momenta.size());
-  if (linkage_.floats()) {
-    Eigen::Matrix<double, 6, 1> twist;
-    twist << Vector3::Zero(), angular_momentum_;
-    twist = motion_.mass().topLeftCorner<6, 6>().ldlt().solve(twist);
-    locked = 0.5 * angular_momentum_.dot(twist.tail<3>());
-    next_.momenta = motion_.mass().bottomLeftCorner(now_.momenta.size(), 6) * twist;
-  }
-  const double share =
-      lost ? 0.0 : std::sqrt(std::clamp((before + weight - locked) / (moving - locked), 0.0, 1.0));
-  now_.momenta = next_.momenta + share * (now_.momenta - next_.momenta);
+  now_.momenta = next_.momenta + std::sqrt(ratio) * (now_.momenta - next_.momenta);
   find_velocity(now_);
 }
 

@@ -40,6 +40,7 @@ class LinkageFlight {
   void find_rate(const Point& point, const Vector3& gravity, Point& rate);
   double fastest() const;
   double energy(const Point& point, const Vector3& gravity) const;
+  double lock_joints();
   void keep_to_energy(const Vector3& gravity, double before);
   void advance(const Vector3& gravity, double seconds, int rounds);
   static void go(const Point& from, double a, const Point& first, double b, const Point& second, Point& to);

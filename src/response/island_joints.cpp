@@ -190,9 +190,10 @@ void IslandProblem::add_point_jacobian(int number, const Vector3& arm, double si
 }
 
 /// H = M + h sum (J_c' S J_c + s_T j_c' j_c) - h dt/du, with J_c and j_c the Jacobians of a row's relative
-/// velocity and spin. -dt/du is diagonal and not negative.
+/// velocity and spin. -dt/du is diagonal and not negative. Only the lower triangle is computed.
 void IslandProblem::factorise_joints() {
   hessian_ = mass_;
+  auto lower = hessian_.triangularView<Eigen::Lower>();
   for (const SpringContact& row : rows_) {
     const SpringResponse& response = row.response;
     if (response.normal_slope <= 0.0 && response.tangential_slope <= 0.0) continue;
@@ -209,9 +210,9 @@ void IslandProblem::factorise_joints() {
     if (row.a != SpringContact::kNone) add(row.a, row.arm_a, -1.0);
     const Matrix3 slope = step_ * point_slope(row).matrix();
     point_product_ = slope.lazyProduct(point_jacobian_);
-    hessian_ += point_jacobian_.transpose().lazyProduct(point_product_);
+    lower += point_jacobian_.transpose().lazyProduct(point_product_);
     if (response.torque_slope > 0.0)
-      hessian_ += (step_ * response.torque_slope * spin_jacobian_.transpose()).lazyProduct(spin_jacobian_);
+      lower += (step_ * response.torque_slope * spin_jacobian_.transpose()).lazyProduct(spin_jacobian_);
   }
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);

@@ -142,6 +142,9 @@ def steps():
     for seed in range(10):
         stream = random.Random(seed)
         write("step", "random_%d" % seed, bytes(stream.randrange(256) for _ in range(400)))
+        # by the last byte (StepKind): meshes, some inside each other
+        if seed < 4:
+            write("step", "overlapping_%d" % seed, bytes(stream.randrange(256) for _ in range(400)) + bytes([31]))
 
 
 if __name__ == "__main__":

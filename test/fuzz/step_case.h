@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
 
+#include "collision/mesh_shapes.h"
 #include "fuzz/target.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "support/fixtures.h"
@@ -14,25 +17,40 @@
 namespace mrhi::fuzzing {
 
 /// A scene, a configuration and frames out of bytes: hands that go through one to four bodies, which hang on
-/// joints in some, now and then with numbers that are none and stamps from elsewhere.
+/// joints in some, now and then with numbers that are none and stamps from elsewhere. Bodies of some scenes
+/// start inside each other, or in the same place.
 struct StepCase {
   Scene scene;
+  bool overlaps = false;
   Configuration configuration;
   std::vector<JointsFrame> frames;
 };
 
 constexpr std::size_t kMostFrames = 40;
 
-inline Shape shape_of(Bytes& bytes) {
+/// What a case is, by its last byte, so that all others mean the same in every kind of case.
+struct StepKind {
+  bool overlaps = false;  ///< bodies may start inside each other, or in the same place
+  bool meshes = false;    ///< in place of boxes and spheres
+
+  explicit StepKind(int last) : overlaps(last % 8 == 7), meshes(last / 8 % 4 == 3) {}
+};
+
+inline Mesh mesh_of(TriangleMesh triangles) {
+  return {std::make_shared<const TriangleMesh>(std::move(triangles)), {}};
+}
+
+inline Shape shape_of(Bytes& bytes, bool meshes) {
   const auto size = [&] { return 0.003 * std::pow(25.0, bytes.between(0.0, 1.0)); };  // 3 to 75 mm
   const double first = size(), second = size(), third = size();
+  const Vector3 half(first, second, third);
   switch (bytes.below(3)) {
     case 0:
-      return Box{Vector3(first, second, third)};
+      return meshes ? Shape(mesh_of(box_mesh(half))) : Box{half};
     case 1:
       return Cylinder{first, second};
     default:
-      return Sphere{first};
+      return meshes ? Shape(mesh_of(notched_cube(first))) : Sphere{first};
   }
 }
 
@@ -46,14 +64,14 @@ inline Quaternion orientation_of(Bytes& bytes) {
   return Quaternion(1.0, half.x(), half.y(), half.z()).normalized();
 }
 
-inline Body body_of(Bytes& bytes, int number, const Material& material) {
+inline Body body_of(Bytes& bytes, int number, const Material& material, bool meshes) {
   const bool extreme = bytes.one_in(8);
   const double mass = std::pow(10.0, extreme ? bytes.between(-6.0, 6.0) : bytes.between(-2.0, 0.5));
   Body body = testing::box_body(Vector3(0.04, 0.05, 0.06), mass);
   body.name = "body_" + std::to_string(number);
   body.material = material;
   body.fixed = bytes.one_in(4);
-  body.shapes = {{shape_of(bytes), {}}};
+  body.shapes = {{shape_of(bytes, meshes), {}}};
   body.start = {vector_of(bytes, 0.15), orientation_of(bytes)};
   if (!body.fixed && bytes.one_in(4)) body.start_twist = {vector_of(bytes, 2.0), vector_of(bytes, 30.0)};
   complete(body);
@@ -99,8 +117,8 @@ inline Joint joint_of(Bytes& bytes, int parent, int child) {
   return joint;
 }
 
-/// Hangs bodies on those before them, or on the world, where what hangs is clear of all else.
-inline void hang(Bytes& bytes, Scene& scene) {
+/// Hangs bodies on those before them, or on the world, where what hangs is clear of all else, or `overlaps`.
+inline void hang(Bytes& bytes, Scene& scene, bool overlaps) {
   Scene hung = scene;
   for (int child = 0; child < static_cast<int>(scene.bodies.size()); ++child) {
     if (scene.bodies[static_cast<std::size_t>(child)].fixed || bytes.one_in(3)) continue;
@@ -111,12 +129,12 @@ inline void hang(Bytes& bytes, Scene& scene) {
   arrange_joints(hung);
   for (std::size_t a = 0; a < hung.bodies.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b)
-      if (!is_clear(hung.bodies[a], hung.bodies[b])) return;
+      if (!overlaps && !is_clear(hung.bodies[a], hung.bodies[b])) return;
   }
   scene = hung;
 }
 
-inline Scene scene_of(Bytes& bytes, const Configuration& configuration) {
+inline Scene scene_of(Bytes& bytes, const Configuration& configuration, const StepKind& kind) {
   Scene scene;
   scene.name = "fuzzed";
   if (bytes.one_in(4)) scene.gravity = Vector3(0, 0, -9.81);
@@ -124,10 +142,15 @@ inline Scene scene_of(Bytes& bytes, const Configuration& configuration) {
   if (bytes.one_in(2)) material.restitution = bytes.between(0.0, 1.0);
   const int bodies = 1 + bytes.below(4);
   for (int i = 0; i < bodies; ++i) {
-    Body body = body_of(bytes, i, material);
-    if (is_clear(scene, body)) scene.bodies.push_back(std::move(body));
+    Body body = body_of(bytes, i, material, kind.meshes);
+    if (kind.overlaps && i > 0 && bytes.one_in(2)) {
+      body.shapes = scene.bodies[0].shapes;
+      body.start = scene.bodies[0].start;
+      complete(body);
+    }
+    if (kind.overlaps || is_clear(scene, body)) scene.bodies.push_back(std::move(body));
   }
-  if (bytes.one_in(3)) hang(bytes, scene);
+  if (bytes.one_in(3)) hang(bytes, scene, kind.overlaps);
   return scene;
 }
 
@@ -215,7 +238,9 @@ inline StepCase step_case(const std::uint8_t* data, std::size_t size,
   StepCase made;
   made.configuration = configuration_of(bytes);
   if (model) made.configuration.contact_model = *model;
-  made.scene = scene_of(bytes, made.configuration);
+  const StepKind kind(size > 0 ? data[size - 1] : 0);
+  made.overlaps = kind.overlaps;
+  made.scene = scene_of(bytes, made.configuration, kind);
   const Vector3 about = made.scene.bodies.empty() ? Vector3::Zero() : made.scene.bodies[0].start.position;
   Walk right{vector_of(bytes, 0.08), orientation_of(bytes)},
       left{vector_of(bytes, 0.08), orientation_of(bytes)};

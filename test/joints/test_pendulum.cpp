@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <vector>
 
 #include "support/joints.h"
 
@@ -154,24 +156,50 @@ Scene falling_chain(int rods, int start) {
   return scene;
 }
 
-// In steps of a tracker's frame Newton's method comes to no end where limits and contacts of a violent fall
-// meet. What it left behind once gained energy from step to step, up to 1e5 J, and a step then took 0.3
-// to 1.8 s.
-TEST(Chain, of_sixteen_to_twenty_that_falls_on_a_floor_gains_no_energy_and_costs_little) {
-  for (int start = 0; start < 6; ++start) {
-    Configuration configuration = unfiltered(ContactModelKind::implicit);
-    configuration.step = 1.0 / 120.0;
-    Simulation simulation(falling_chain(16 + start % 5, start), configuration);
-    simulation.advance({at(0.0), {}});
-    const double before = energy(simulation);
-    for (int i = 1; i <= 120; ++i) {
-      const std::clock_t from = std::clock();
-      simulation.advance({at(i / 120.0), {}});
-      const double milliseconds = 1e3 * static_cast<double>(std::clock() - from) / CLOCKS_PER_SEC;
-      EXPECT_LT(milliseconds, 50.0) << start << " "
-                                    << i;  // measured 5 at most; sanitizers take ten times that
-      EXPECT_TRUE(simulation.result().not_finite.empty()) << start << " " << i;
-      ASSERT_LT(energy(simulation), before + 0.01) << start << " " << i;  // of 20 to 200 J that it falls by
+/// Least CPU time of three runs [ms]: what else the machine does makes a step slower, never faster.
+class CpuTimes {
+ public:
+  /// Of a step of the run that begin() began.
+  void note(double milliseconds) {
+    if (step_ == least_.size()) least_.push_back(milliseconds);
+    least_[step_] = std::min(least_[step_], milliseconds);
+    ++step_;
+  }
+  void begin() { step_ = 0; }
+  double longest() const { return *std::max_element(least_.begin(), least_.end()); }
+
+ private:
+  std::vector<double> least_;
+  std::size_t step_ = 0;
+};
+
+void let_fall(int rods, int start, CpuTimes& times) {
+  Configuration configuration = unfiltered(ContactModelKind::implicit);
+  configuration.step = 1.0 / 120.0;
+  Simulation simulation(falling_chain(rods, start), configuration);
+  simulation.advance({at(0.0), {}});
+  const double before = energy(simulation);
+  times.begin();
+  for (int i = 1; i <= 120; ++i) {
+    const std::clock_t from = std::clock();
+    simulation.advance({at(i / 120.0), {}});
+    times.note(1e3 * static_cast<double>(std::clock() - from) / CLOCKS_PER_SEC);
+    EXPECT_TRUE(simulation.result().not_finite.empty()) << rods << " " << start << " " << i;
+    // They fall by 20 to 400 J.
+    ASSERT_LT(energy(simulation), before + 0.01) << rods << " " << start << " " << i;
+  }
+}
+
+// In steps of a tracker's frame, Newton's method does not converge where limits and contacts of a violent
+// fall meet. Its remainder once gained up to 1e5 J, and a step took up to 1.8 s. Starts 18 and 21 end a step
+// of the flight in a shape where even locked joints have more energy than there was.
+TEST(Chain, of_sixteen_to_thirty_two_that_falls_on_a_floor_gains_no_energy_and_costs_little) {
+  for (const int rods : {16, 20, 24, 28, 32}) {
+    for (const int start : {0, 18, 21}) {
+      CpuTimes times;
+      for (int run = 0; run < 3 && !HasFatalFailure(); ++run) let_fall(rods, start, times);
+      // Measured 5 at most; sanitizers take ten times that.
+      EXPECT_LT(times.longest(), 50.0) << rods << " " << start;
     }
   }
 }
