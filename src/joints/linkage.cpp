@@ -154,10 +154,8 @@ void LinkageMotion::weigh() {
         fill(axis, Vector3::Unit(axis), Vector3::Zero());
         fill(3 + axis, Vector3::Unit(axis).cross(arm), Vector3::Unit(axis));
       }
-    } else if (joint(i).kind == JointKind::sliding) {
-      fill(linkage_.column(i), placed.axis, Vector3::Zero());
     } else {
-      fill(linkage_.column(i), placed.axis.cross(moved.centre - placed.origin), placed.axis);
+      fill(linkage_.column(i), placed.velocity_at(moved.centre), placed.unit.angular);
     }
   }
   mass_.triangularView<Eigen::StrictlyLower>() = mass_.transpose();
