@@ -27,7 +27,7 @@ constexpr double kNoiseMargin = 4.0;
 /// by this [m], and both sides together are within kPadDepth of clearance.
 constexpr double kReleaseFraction = 0.9, kMinRelease = 0.015;
 /// Or by this, if the gaps between both sides and the body sum to this clearance [m].
-constexpr double kMinOpening = 0.0015, kReleaseClearance = 0.001;
+constexpr double kMinOpening = 0.0015, kReleaseClearance = 0.0008;
 /// Fingers that have opened by this fraction of that distance, or open faster, do not carry the body [m/s].
 constexpr double kOpensFraction = 0.5, kOpensSpeed = 1.0;
 /// A hand that is farther from a body than this has left it, whatever its fingers do [m].
@@ -189,6 +189,7 @@ bool GraspAssist::is_buried(std::size_t slot, const SimulationState& state) cons
 
 void GraspAssist::lose_hands(Nanoseconds now, SimulationState& state) {
   closing_.clear();
+  take_held_objects(false, 1.0, state);
   const auto is_over = [&](Grip& grip) {
     const HandTrack& track = state.hands[grip.hand];
     if (track.active) return false;
@@ -289,18 +290,19 @@ void GraspAssist::follow(SimulationState& state, Grip& grip) {
     state.interactions[grip.hand * state.bodies.size() + static_cast<std::size_t>(part)].shown_in = true;
 }
 
-/// Begins a grip on each object that a hand has between opposing contacts, or adds fingers to it. Does not
-/// change a grip that is active, released or lost.
-void GraspAssist::take_held_objects(double fraction, SimulationState& state) const {
+/// Begins a grip on each object that a hand has between opposing contacts, or adds fingers to it. A `seen`
+/// hand takes beyond kPadDepth; a lost one all that it held, as its springs are gone. Does not change a grip
+/// that is active, released or lost.
+void GraspAssist::take_held_objects(bool seen, double fraction, SimulationState& state) const {
   const std::vector<Contact>& contacts = state.contacts;
   for (auto one = contacts.begin(); one != contacts.end(); ++one) {
     const std::size_t slot = one->key.hand, body = one->key.body;
     const GraspMode mode = objects_.mode_of(body);
-    if (one->depth <= 0.0 || mode == GraspMode::free) continue;
-    const bool seen = std::any_of(contacts.begin(), one, [&](const Contact& before) {
+    if (one->depth <= 0.0 || mode == GraspMode::free || state.hands[slot].active != seen) continue;
+    const bool visited = std::any_of(contacts.begin(), one, [&](const Contact& before) {
       return before.depth > 0.0 && before.key.hand == slot && objects_.same_object(before.key.body, body);
     });
-    if (seen) continue;
+    if (visited) continue;
     const auto known = find_grip(slot, body, state);
     const bool is_new = known == state.grips.end();
     if (!is_new && (known->active || known->released || known->lost)) continue;
@@ -311,7 +313,7 @@ void GraspAssist::take_held_objects(double fraction, SimulationState& state) con
     if (is_buried(slot, state) || is_shown_in(slot, body, state)) continue;
     auto found = objects_.opposing_contacts(slot, body, false, contacts);
     if (!found) found = objects_.opposing_contacts(slot, body, true, contacts);
-    if (!found || (mode != GraspMode::never && found->depth <= kPadDepth)) continue;
+    if (!found || (seen && mode != GraspMode::never && found->depth <= kPadDepth)) continue;
     if (is_new || known->by_palm != found->by_palm || (found->fingers_mask & ~known->fingers) != 0)
       take(slot, *found, fraction, state);
   }
@@ -478,7 +480,7 @@ bool GraspAssist::is_held_elsewhere(const SimulationState& state, const Grip& gr
 
 void GraspAssist::begin_step(double fraction, double step, SimulationState& state) const {
   if (!objects_.any_graspable()) return;
-  take_held_objects(fraction, state);
+  take_held_objects(true, fraction, state);
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
     const bool touching = objects_.touching_sides(grip, state.contacts).both();

@@ -28,7 +28,8 @@ class GraspAssist {
 
   /// Call once a frame of `seconds`, when the hands' next poses are known: begins and ends grips.
   void begin_frame(const Neighbours& neighbours, double seconds, SimulationState& state);
-  /// Call at `now` when hands may have been lost: their grips wait for kMaxLoss, and then end.
+  /// Call at `now` when hands may have been lost: they take what they hold, and their grips wait for
+  /// kMaxLoss.
   void lose_hands(Nanoseconds now, SimulationState& state);
   /// Call every step of `step` seconds, `fraction` of the way into the frame: sets compliance depths and the
   /// grips' springs.
@@ -50,7 +51,7 @@ class GraspAssist {
   bool is_held_elsewhere(const SimulationState& state, const Grip& grip) const;
   void follow(SimulationState& state, Grip& grip);
   std::vector<Grip>::iterator find_grip(std::size_t slot, std::size_t body, SimulationState& state) const;
-  void take_held_objects(double fraction, SimulationState& state) const;
+  void take_held_objects(bool seen, double fraction, SimulationState& state) const;
   void take(std::size_t slot, const OpposingContacts& opposing, double fraction,
             SimulationState& state) const;
   void place(double fraction, double until, const HandTrack& track, Grip& grip) const;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "support/grips.h"
 #include "support/pinch_ride.h"
 
 // Scene (a) as a tracker samples it. Between two frames the hand moves on a path with continuous velocity
@@ -126,6 +127,40 @@ TEST(TrackerRate, the_forces_of_a_frame_are_the_momentum_given_in_it_over_its_ti
         EXPECT_LE((given - (now - before)).norm(), 1e-6) << rate << " Hz, " << t << " s";
       }
       before = now;
+    }
+  }
+}
+
+/// How far a cube of 0.1 kg between two fingers is off its place in the hand after it was shaken with `share`
+/// of the acceleration that Coulomb's limit of both allows: a = 2 mu N / m.
+double off_place(const HandStrength& hand, double normal_force, double rate, double share) {
+  const Body cube = testing::stiff_box(Vector3::Constant(0.05), 0.1);
+  const double turns = 2.0 * M_PI * kShake;
+  const double amplitude =
+      share * 2.0 * cube.material.static_friction * normal_force / (cube.mass * turns * turns);
+  Simulation simulation(testing::scene_of(cube), configuration_of(hand, FilterKind::none));
+  Vector3 before = Vector3::Zero();
+  for (int frame = 0; frame / rate < kFrom + kFor + 0.5; ++frame) {
+    const double t = frame / rate, since = t - kFrom;
+    const double ease = since < 0.0 ? 0.0 : smooth(since, 1.0) * (1.0 - smooth(since - kFor + 1.0, 1.0));
+    Pose sway;
+    sway.position = ease * amplitude * std::sin(turns * since) * Vector3::UnitZ();
+    simulation.advance(
+        {testing::at(t),
+         {testing::moved(testing::symmetric_pinch(0.025, testing::closing_gap(t, 0.002)), sway)}});
+    if (since < 0.0) before = simulation.state().bodies[0].pose.position;
+  }
+  return (simulation.state().bodies[0].pose.position - before).norm();
+}
+
+/// At a depth of 2 mm a rigid finger presses with 4 N, a person's pad of 2 mm with half of it.
+TEST(TrackerRate, a_cube_between_two_fingers_loses_its_place_only_at_coulombs_limit) {
+  for (const double rate : {60.0, 90.0, 120.0}) {
+    for (const bool person : {false, true}) {
+      const HandStrength hand = person ? HandStrength::of_a_person() : HandStrength{};
+      const double force = person ? 2.0 : 4.0;
+      EXPECT_LT(off_place(hand, force, rate, 0.95), 1e-4) << rate << " Hz";
+      EXPECT_GT(off_place(hand, force, rate, 1.03), 1e-4) << rate << " Hz";
     }
   }
 }
