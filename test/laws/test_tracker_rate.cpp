@@ -153,14 +153,15 @@ double off_place(const HandStrength& hand, double normal_force, double rate, dou
   return (simulation.state().bodies[0].pose.position - before).norm();
 }
 
-/// At a depth of 2 mm a rigid finger presses with 4 N, a person's pad of 2 mm with half of it.
+/// Between steps of 1 ms the load rises, so 99 % is too much. At a depth of 2 mm a rigid finger presses with
+/// 4 N, a person's pad of 2 mm with half of it.
 TEST(TrackerRate, a_cube_between_two_fingers_loses_its_place_only_at_coulombs_limit) {
   for (const double rate : {60.0, 90.0, 120.0}) {
     for (const bool person : {false, true}) {
       const HandStrength hand = person ? HandStrength::of_a_person() : HandStrength{};
       const double force = person ? 2.0 : 4.0;
-      EXPECT_LT(off_place(hand, force, rate, 0.95), 1e-4) << rate << " Hz";
-      EXPECT_GT(off_place(hand, force, rate, 1.03), 1e-4) << rate << " Hz";
+      EXPECT_LT(off_place(hand, force, rate, 0.97), 1e-6) << rate << " Hz";
+      EXPECT_GT(off_place(hand, force, rate, 0.99), 1e-4) << rate << " Hz";
     }
   }
 }
