@@ -27,7 +27,7 @@ constexpr double kNoiseMargin = 4.0;
 /// by this [m], and both sides together are within kPadDepth of clearance.
 constexpr double kReleaseFraction = 0.9, kMinRelease = 0.015;
 /// Or by this, if the gaps between both sides and the body sum to this clearance [m].
-constexpr double kMinOpening = 0.0015, kReleaseClearance = 0.0008;
+constexpr double kMinOpening = 0.0015, kReleaseClearance = 0.001;
 /// Fingers that have opened by this fraction of that distance, or open faster, do not carry the body [m/s].
 constexpr double kOpensFraction = 0.5, kOpensSpeed = 1.0;
 /// A hand that is farther from a body than this has left it, whatever its fingers do [m].
