@@ -57,7 +57,7 @@ class Consumers(unittest.TestCase):
             with open(path, encoding='utf-8') as file:
                 if '// Deprecated' in file.read():
                     headers.append(os.path.relpath(path, os.path.join(REPOSITORY, 'include')))
-        self.assertEqual(len(headers), 10)
+        self.assertEqual(len(headers), 11)
         types = ('HandPairs', 'JointGaps', 'SessionSetup', 'SessionFolder', 'Material', 'UsageError', 'JointState', 'HandOffset',
                  'TrackingNoise', 'FilterMemory')
         code = ''.join('#include "%s"\n' % header for header in sorted(headers))
