@@ -135,7 +135,7 @@ class Playing {
       const auto& grips = simulation_.state().grips;
       made_.borne += std::any_of(grips.begin(), grips.end(), [](const Grip& grip) { return grip.active; });
     }
-    // Bodies that start inside each other are pushed out with energy of nowhere.
+    // Bodies that start inside each other gain energy as they are pushed apart.
     if (!played_.overlaps && !touches(simulation_)) ledger_.emplace(simulation_);
   }
 

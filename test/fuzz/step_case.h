@@ -28,7 +28,7 @@ struct StepCase {
 
 constexpr std::size_t kMostFrames = 40;
 
-/// What a case is, by its last byte, so that all others mean the same in every kind of case.
+/// Kind of a case, from its last byte. The other bytes mean the same in every kind.
 struct StepKind {
   bool overlaps = false;  ///< bodies may start inside each other, or in the same place
   bool meshes = false;    ///< in place of boxes and spheres
@@ -117,7 +117,8 @@ inline Joint joint_of(Bytes& bytes, int parent, int child) {
   return joint;
 }
 
-/// Hangs bodies on those before them, or on the world, where what hangs is clear of all else, or `overlaps`.
+/// Joins bodies to earlier ones or to the world, unless the joined body would overlap another. With
+/// `overlaps` it may.
 inline void hang(Bytes& bytes, Scene& scene, bool overlaps) {
   Scene hung = scene;
   for (int child = 0; child < static_cast<int>(scene.bodies.size()); ++child) {
