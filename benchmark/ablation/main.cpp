@@ -1,5 +1,5 @@
 // Benefit and cost of each contact refinement: turned off alone in the scene that needs it, and in scene (a)
-// for the cost of a step. Prints the table of docs/contact.md.
+// for the cost of a step; and what the paper's equations do as printed. Prints the tables of docs/contact.md.
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -10,7 +10,8 @@ namespace mrhi::ablation {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: ablation | ablation --steps none|REFINEMENT (scene (a) alone, for a profiler)\n";
+    "usage: ablation | ablation --printed | ablation --steps none|REFINEMENT (scene (a) alone, for a "
+    "profiler)\n";
 
 std::string written(double value, const std::string& unit) {
   constexpr double kNothing = 1e-6;  // far below the precision of a printed value
@@ -31,6 +32,14 @@ void print_benefits() {
       std::fflush(stdout);
     }
   }
+}
+
+void print_paper() {
+  std::printf("| equations | figure | as we read them | as printed |\n|---|---|---|---|\n");
+  for (const PrintedDifference& difference : printed_differences())
+    std::printf("| %s | %s | %s | %s |\n", difference.equations.c_str(), difference.what.c_str(),
+                written(difference.of(false), difference.unit).c_str(),
+                written(difference.of(true), difference.unit).c_str());
 }
 
 void print_costs(const std::string& program) {
@@ -54,6 +63,7 @@ int run(const std::vector<std::string>& arguments, const std::string& program) {
     print_costs(program);
     return 0;
   }
+  if (arguments.size() == 1 && arguments[0] == "--printed") return print_paper(), 0;
   if (arguments.size() == 2 && arguments[0] == "--steps") {
     if (arguments[1] == "none") return run_scene_a(Variant()), 0;
     for (const Refinement& refinement : refinements()) {

@@ -38,4 +38,13 @@ struct Measure {
 };
 const std::vector<Measure>& measures();
 
+/// `seed`, or with seed/literal the paper as printed, in scene (a) and others.
+Variant paper(bool as_printed);
+/// What differs between the two; the first of each pair is for our reading.
+struct PrintedDifference {
+  std::string equations, what, unit;
+  std::function<double(bool as_printed)> of;
+};
+const std::vector<PrintedDifference>& printed_differences();
+
 }  // namespace mrhi::ablation

@@ -59,11 +59,12 @@ void write_recordings(const std::vector<std::string>& files, std::ostream& csv) 
 }
 
 void write_rides(std::ostream& csv) {
-  csv << "filter,series,setting,default,true_slip_mm,displacement_mm,jitter_mm\n";
+  csv << "filter,series,setting,default,true_slip_mm,displacement_mm,jitter_mm,gain\n";
   CsvRows row(csv);
   for (const Setting& setting : settings()) {
     const Ride held = ride(setting.configuration);
-    named(setting, row) << kMilli * held.true_slip << kMilli * held.displacement << kMilli * held.jitter;
+    named(setting, row) << kMilli * held.true_slip << kMilli * held.displacement << kMilli * held.jitter
+                        << gain_of_a_shake(setting.configuration);
     row.end_row();
   }
 }

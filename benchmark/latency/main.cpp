@@ -28,7 +28,7 @@ namespace {
 using topic_tools::ShapeShifter;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kWarmUp = 3.0;  // excluded [s]
+constexpr double kWarmUp = 8.0;  // excluded, in which rviz starts [s]
 constexpr std::uint32_t kQueue = 10;
 
 /// Forwards messages.

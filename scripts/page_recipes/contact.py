@@ -16,7 +16,7 @@ def contact():
         if found:
             tiers.setdefault(found.group(1).strip(), []).append([float(x) for x in found.groups()[1:]])
     return {
-        'refinements': benefits.strip(),
+        'refinements': benefits.strip(), 'printed': run('ablation', '--printed').strip(),
         'instructions': _range_of(costs, instructions),
         'tiers': ', '.join('%s %.2f mm (%.1f)' % (name, sides[0][0], sides[0][3] / next(
             some for n, some in tiers.items() if n.startswith('capsule'))[0][3]) for name, sides in tiers.items()),

@@ -39,9 +39,9 @@ def filters():
     grasps = rows_of(run('noisy_grasps', 'grasp_cube'))
     return {
         'recorded': table(['', 'jitter [mm]', 'lag [ms]', 'error moving [mm]', 'error still [mm]'], lines),
-        'held': table(['', 'true slip [mm]', 'displacement [mm]', "cube's jitter [mm]"], [
+        'held': table(['', 'true slip [mm]', 'displacement [mm]', "cube's jitter [mm]", 'gain of a shake'], [
             [label] + ['%.3f' % float(of_held[name][key]) for key in ('true_slip_mm', 'displacement_mm', 'jitter_mm')]
-            for name, label in FILTERS.items()]),
+            + ['%.2f' % float(of_held[name]['gain'])] for name, label in FILTERS.items()]),
         'grasps': _grasps(grasps),
     }, {}
 

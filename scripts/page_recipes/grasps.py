@@ -130,7 +130,7 @@ def captures():
             for number, (label, chosen) in enumerate(HANDS.items() if index == 0 else [('defaults', {})]):
                 output = os.path.join(scratch, '%d_%d' % (index, number))
                 os.makedirs(output)
-                leads = '1,0.3' if (index, number) == (0, 0) else '1'
+                leads = ','.join(LEADS) if (index, number) == (0, 0) else '1'
                 listing = run('real_grasps', '--arctic', folder, '--lead', leads, '--list', '--output', output, *_settings(chosen))
                 results[-1][1][label] = (output, listing)
         return captures_figures(results), {}
@@ -138,6 +138,7 @@ def captures():
         shutil.rmtree(scratch)
 
 
+LEADS = '1', '0.3', '3', '10', 'clear'  # [s]; clear: since no hand touched the object
 CHOSEN_ON = r's1_(ketchup|laptop|notebook|waffleiron)_use_01_|s2_notebook_use_02_'  # what the defaults were chosen on
 SETS = {'artigrasp': 'ARCTIC', 'dexmachina': 'ARCTIC', 'manipnet': 'ManipNet'}
 
@@ -166,7 +167,8 @@ def captures_figures(results):
     return dict({'sets': table(['set', 'windows (captures)', 'people, objects', 'within 50 mm', 'within 20 mm', 'p90', '`rigid`: 20 mm',
                                 'difference, points'], sets),
                  'chosen': _chosen(first['defaults'][1].split('windows lead 1 ')[0]),
-                 'short_lead': ' and '.join(_share(of_first['0.3', 'all'], limit) for limit in (50, 20)),
+                 'leads': '; '.join('%s %s' % (lead if lead == 'clear' else lead + ' s', ' and '.join(
+                     _share(of_first[lead, 'all'], limit) for limit in (50, 20))) for lead in LEADS[1:]),
                  'settings': '; '.join('%s %.0f %% and %.0f %%%s' % (
                      label, 100 * float(row['within_50mm']), 100 * float(row['within_20mm']),
                      '' if label == '`rigid`' else ', ' + _newtons(row)) for label, row in shares + rigid)},

@@ -26,14 +26,19 @@ def run(program, *arguments):
     """Standard output of a program of the package, brought up to date by make."""
     path = os.path.join(PACKAGE, 'scripts', program)
     if not os.path.isfile(path):
-        _done(['make', '-C', os.path.join(PACKAGE, 'build', 'catkin'), program])
+        build(program)
         path = os.path.join(PROGRAMS, program)
-    return _done([path, *arguments])
+    return output([path, *arguments])
 
 
-def _done(command):
+def build(program):
+    output(['make', '-C', os.path.join(PACKAGE, 'build', 'catkin'), program])
+
+
+def output(command):
+    """What a command prints, run in the package's folder."""
     try:
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False)
+        done = subprocess.run(command, cwd=PACKAGE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False)
     except OSError as error:
         raise MeasurementError('%s: %s' % (command[0], error.strerror)) from None
     if done.returncode != 0:
@@ -45,7 +50,7 @@ def draw(chart, script, source):
     """Draws a program's results by a script of benchmark/."""
     with tempfile.TemporaryDirectory() as folder:
         picture = os.path.join(folder, 'chart.png')
-        _done([sys.executable, os.path.join(PACKAGE, 'benchmark', script), source, picture])
+        output([sys.executable, os.path.join(PACKAGE, 'benchmark', script), source, picture])
         keep_chart(chart, picture)
 
 

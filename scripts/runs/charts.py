@@ -21,7 +21,7 @@ MAX_GAP = 0.1  # s; a curve with a longer gap is two
 FINGER_COLOURS = ('#d55e00', '#0072b2', '#009e73', '#cc79a7', '#e69f00', '#555555')  # Okabe & Ito's
 STATE_COLOURS = {'free': '#f0f0f0', 'contact': '#f3dfa2', 'hold': '#9fd6c2', 'slip': '#e69f00', 'drop': '#c5d3ea'}
 STICKS, SLIPS, ASSIST, SHADE = '#9fd6c2', '#f0e442', '#d7c4e8', '#eee3f5'
-GRASP_MARK, LOSS_MARK, JOINT_MARK, INK = '#009e73', '#d55e00', '#0072b2', '#333333'
+GRASP_MARK, LOSS_MARK, JOINT_MARK, ASSIST_INK, INK = '#009e73', '#d55e00', '#0072b2', '#7b4ea3', '#333333'
 MAX_UTILISATION, MAX_BEARABLE = 2.0, 5.0  # larger values are cut off
 DRAWING = 2.35  # inches
 JOINT_EVENTS = ('JOINT_LIMIT', 'DETENT', 'LATCH_OPEN')
@@ -128,6 +128,9 @@ def grip_charts(thing, start, until, whole):
     charts.append(Chart('normal force of each finger [N]', _of_fingers(thing, lambda touch: touch.normal), 0.1))
     charts.append(Chart('friction utilisation (dotted: 1, slipping; above 1, grasp assist or an edge carries the rest)',
                         _of_fingers(thing, utilisation), 1.2, MAX_UTILISATION, (1.0,)))
+    if whole and thing.assisted.any():
+        charts.append(Chart('force of grasp assist (violet) and of all contacts together [N]',
+                            [(ASSIST_INK, thing.time, thing.assist), (INK, thing.time, thing.carried)], 0.1))
     rows = [(FINGERS[finger], spans_of(thing.time, [_stick_or_slip(touches, finger) for touches in thing.touches]))
             for finger in range(PALM + 1)]
     rows = [(name, spans) for name, spans in rows if any(span[1] >= start and span[0] <= until for span in spans)]

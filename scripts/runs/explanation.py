@@ -72,6 +72,8 @@ def _loss(loss):
         told['opened'] = loss.opened
     if loss.by:
         told['by'] = loss.by
+    if loss.assistance:
+        told['assist'] = loss.assistance._asdict()
     return dict(told, text=loss.text, grasp_end=loss.grasp_end)
 
 
@@ -81,7 +83,7 @@ def _object(thing):
             'fingers': [_finger(time, touch) for time, touches in zip(thing.time, thing.touches) for touch in touches],
             'grip': [{'time': thing.time[i], 'torque': thing.torque[i], 'margin': thing.margin[i],
                       'bearable': thing.bearable[i] if thing.bearable[i] < MAX_BEARABLE else None,
-                      'helped': bool(thing.assisted[i])} for i, touches in enumerate(thing.touches) if touches]}
+                      'helped': bool(thing.assisted[i]), 'assist': thing.assist[i]} for i, touches in enumerate(thing.touches) if touches]}
 
 
 def _stretches(thing):

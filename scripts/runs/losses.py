@@ -24,7 +24,7 @@ SLIDE_MARGIN = 0.03  # s, by which an opening may begin after all fingers slide
 # The end of a hold, or of a contact of two fingers. Times in s, forces in N.
 Loss = collections.namedtuple(
     'Loss', 'object hand_id grasped start until cause push load friction friction_needed push_needed bearable opened by text '
-    'grasp_end frame')
+    'grasp_end frame assistance')
 # A touch without a hold that made the object faster.
 PassingTouch = collections.namedtuple('PassingTouch', 'object hand_id start until fingers speed')
 # A moment for a picture.
@@ -91,7 +91,7 @@ def _loss_of(stay, grasped, story):
         friction_needed=load / push if push > 0.0 else 0.0,
         push_needed=max(0.0, load / max(thing.static_friction, 1e-3) - push),
         bearable=thing.bearable[stay.window:stay.touched + 1].min(), opened=None, by='', text='', grasp_end=_grasp_end(stay, story),
-        frame=int(thing.frame[stay.touched]))
+        frame=int(thing.frame[stay.touched]), assistance=evidence.assistance_in(stay))
     cause, why, more = _cause_of(stay, loss, thing.time[slid], story)
     loss = loss._replace(cause=cause, **more)
     return loss._replace(text=_story_of(loss, stay, why))
@@ -110,8 +110,7 @@ def _cause_of(stay, loss, slid, story):
     if opening and opening.begun <= slid + SLIDE_MARGIN:
         return 'hand_opened', 'the hand opened: its fingertips moved apart by %.3g mm, from %.2f s on' % (
             1e3 * opening.distance, opening.clear), {'opened': opening.clear}
-    assisted = evidence.assisted_in(stay)
-    if assisted and assisted[1] > end - ASSIST_END:
+    if loss.assistance and loss.assistance.until > end - ASSIST_END:
         return 'assist_ended', 'contact alone did not hold it, and the grasp assist that supported it ended', {}
     if thing.joint:
         return 'too_little_force' if slid < end else 'not_known', (
@@ -154,9 +153,10 @@ def _story_of(loss, stay, why):
     text = '%s (%s from %.2f s) was %s at %.2f s: %s. %s%s' % (
         loss.object, 'held' if loss.grasped else 'pressed', loss.start, 'released' if loss.cause == 'hand_opened' else 'lost',
         loss.until, why, _slides_text(stay), _leaves_text(stay))
-    assisted = evidence.assisted_in(stay)
-    if assisted:
-        text += ' Grasp assist (contact/grasp_assist) supported it from %.2f s to %.2f s, beyond what friction carries.' % assisted
+    if loss.assistance:
+        start, until, force, share = loss.assistance
+        text += (' Grasp assist (contact/grasp_assist) supported it from %.2f s to %.2f s with %.3g N on average, %.0f %% of what '
+                 'acted on it.' % (start, until, force, 100 * share))
     if loss.grasp_end is not None:
         text += ' GRASP_END came at %.2f s, %s.' % (loss.grasp_end, _beside(loss.grasp_end - loss.until))
     return text

@@ -18,6 +18,8 @@ SPAN = 0.02  # s before and after, for the palm's acceleration
 
 Impact = collections.namedtuple('Impact', 'by time speed')
 Opening = collections.namedtuple('Opening', 'begun clear distance')
+# First and last time [s]; mean force [N], and its share in the sum of it and of what all contacts together apply.
+Assistance = collections.namedtuple('Assistance', 'start until force share')
 
 
 class Stay:
@@ -159,10 +161,13 @@ def _acceleration(hand, time):
     return ((hand.palm[after] - hand.palm[at]) / b - (hand.palm[at] - hand.palm[before]) / a) / (0.5 * (a + b))
 
 
-def assisted_in(stay):
-    """First and last time at which grasp assist supported the object, or None [s]."""
-    active = numpy.flatnonzero(stay.thing.assisted[stay.first:stay.touched + 1])
-    return (stay.time(stay.first + active[0]), stay.time(stay.first + active[-1])) if len(active) else None
+def assistance_in(stay):
+    """How grasp assist supported the object, or None."""
+    active = stay.first + numpy.flatnonzero(stay.thing.assisted[stay.first:stay.touched + 1])
+    if not len(active):
+        return None
+    assist, carried = stay.thing.assist[active].sum(), stay.thing.carried[active].sum()
+    return Assistance(stay.time(active[0]), stay.time(active[-1]), assist / len(active), assist / max(assist + carried, 1e-12))
 
 
 def _norm(vector):

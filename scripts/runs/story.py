@@ -31,6 +31,7 @@ class ObjectStory:
         self.velocity = vectors(table, ('vx', 'vy', 'vz'))
         self.level = table['level'].to_numpy()
         self.assisted = table['assisted'].to_numpy() == 1
+        self.assist = numpy.linalg.norm(vectors(table, ('assist_fx', 'assist_fy', 'assist_fz')), axis=1)  # force [N]
         self._add_contacts(contacts)
         self.state = self._states()
 
@@ -41,6 +42,7 @@ class ObjectStory:
         touching = contacts['touching'].to_numpy() == 1
         held, held_rows = contacts[touching], rows[touching]
         self.touches = grip.touches_of(held, held_rows, self.orientation)
+        self.carried = numpy.linalg.norm(grip.summed(held_rows, vectors(held, ('fx', 'fy', 'fz')), len(self.time)), axis=1)  # [N]
         self.torque = grip.torques(held, held_rows, len(self.time))
         self.margin, self.bearable = grip.margins(held, held_rows, self.position)
         self.impacts = [[] for _ in self.time]  # fingers that hit it and have separated

@@ -16,7 +16,7 @@ COLUMNS = {
     'bodies.csv': ('name', 'mass', 'static_friction', 'dynamic_friction', 'radius', 'hx', 'hy', 'hz', 'joint', 'joint_kind',
                    'lower', 'upper'),
     'objects.csv': ('time', 'name', 'px', 'py', 'pz', 'qx', 'qy', 'qz', 'qw', 'vx', 'vy', 'vz', 'level', 'held', 'assisted',
-                    'frame'),
+                    'assist_fx', 'assist_fy', 'assist_fz', 'frame'),
     'joints.csv': ('time', 'name', 'position'),
     'contacts.csv': ('object', 'hand_id', 'finger', 'x', 'y', 'z', 'nx', 'ny', 'nz', 'depth', 'jx', 'jy', 'jz', 'fx', 'fy',
                      'fz', 'normal_force', 'tangential_force', 'friction_limit', 'touching', 'slipping', 'patch', 'frame'),

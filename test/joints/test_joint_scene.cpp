@@ -219,10 +219,13 @@ TEST(JointScene, a_state_that_knows_no_joints_has_them_where_they_begin) {
   EXPECT_EQ(simulation.state().joints[0].position, 0.3);
 }
 
-TEST(JointScene, a_body_that_leaves_is_put_back_with_all_that_hangs_on_it) {
-  Scene scene = testing::pendulum(2, 0.0, 0.0);
-  scene.joints.erase(scene.joints.begin());
-  scene.bodies[0].start_twist.linear = scene.bodies[1].start_twist.linear = {1.0, 0, 0};
+TEST(JointScene, a_body_that_leaves_is_put_back_with_all_that_hangs_on_it_and_no_other_is) {
+  Scene scene = testing::pendulum(4, 0.0, 0.0);
+  scene.joints = {scene.joints[1], scene.joints[3]};  // two pairs
+  scene.bodies[2].start.position = {0, 0.3, 0};
+  for (int b = 0; b < 4; ++b)
+    scene.bodies[static_cast<std::size_t>(b)].start_twist.linear =
+        b < 2 ? Vector3(1, 0, 0) : Vector3(0, 0.1, 0);
   scene.bounds = {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
   Simulation simulation(scene, testing::unfiltered(ContactModelKind::implicit));
   int told = 0;
@@ -231,6 +234,7 @@ TEST(JointScene, a_body_that_leaves_is_put_back_with_all_that_hangs_on_it) {
     EXPECT_LT(testing::apart(now, 0).place, 1e-12);
   });
   EXPECT_EQ(told, 1);
+  EXPECT_NEAR(simulation.state().bodies[2].pose.position.y(), 0.3 + 0.1 * 0.7, 1e-9);
 }
 
 }  // namespace

@@ -5,49 +5,23 @@
 #include <cmath>
 
 #include "mr_hand_interaction/parameters.h"
-#include "support/fixtures.h"
+#include "support/printed_paper.h"
 
 namespace mrhi {
 namespace {
 
-constexpr double kHalf = 0.025, kRadius = 0.008;              // of the cube, of the fingers [m]
-constexpr double kDepth = 0.002, kRate = 1000.0;              // of the centroids, a step a frame
-constexpr double kCubeMass = 0.1, kContactStiffness = 100.0;  // [kg], [N/m]
+using testing::DraggedCube;
+using testing::kPrintedGain;
+
+constexpr double kHalf = DraggedCube::kHalf, kRadius = DraggedCube::kRadius, kCubeMass = DraggedCube::kMass,
+                 kContactStiffness = DraggedCube::kStiffness;
+constexpr double kDepth = 0.002, kRate = 1000.0;  // of the centroids, a step a frame
 
 Configuration literal(bool on) {
   Configuration configuration = testing::unfiltered(ContactModelKind::seed);
   configuration.contact.damping = configuration.contact.release_fade = false;
   set_parameter(configuration, "seed/literal", on ? "true" : "false");
   return configuration;
-}
-
-/// So heavy to turn that it does not.
-Body cube() {
-  Body body = testing::box_body(Vector3::Constant(2.0 * kHalf), kCubeMass);
-  body.inertia *= 1e9;
-  body.material.stiffness = kContactStiffness;
-  return body;
-}
-
-/// How far as-printed filtering puts a still hand from the origin over where it is, at F = 3.
-constexpr double kGain = 4.0 / 3.0;
-
-/// Two fingers along y that press the cube from both sides along z, each as deep with its centroid, and then
-/// drag it along x by 6 cm. `gain`: of the filter.
-Hand dragging(double t, double depth, double gain) {
-  const auto smooth = [](double u) {
-    const double s = std::clamp(u, 0.0, 1.0);
-    return s * s * (3.0 - 2.0 * s);
-  };
-  const double z = kHalf + 0.02 - (0.02 + depth) * smooth(t / 0.5), x = 0.06 * smooth((t - 0.6) / 0.3);
-  Hand hand;
-  for (const double side : {1.0, -1.0}) {
-    const Vector3 middle = Vector3(x, 0.0, side * z) / gain, along(0.0, 0.005 / gain, 0.0);
-    testing::add_finger(hand, capsule_index(side > 0.0 ? 1 : 0, 3), middle - along, middle + along, kRadius);
-  }
-  hand.palm.position = Vector3(x, 0.0, -0.2) / gain;
-  hand.id = 1;
-  return hand;
 }
 
 /// The cube's motion by Eqs. 16 to 20 as they are printed, with the opposite of f on the object, from a state
@@ -75,8 +49,8 @@ struct Printed {
 };
 
 TEST(SeedLiteral, computes_the_penetration_phase_as_printed) {
-  Simulation simulation(testing::scene_of(cube()), literal(true));
-  const auto hand_at = [](double t) { return dragging(t, kDepth, kGain); };
+  Simulation simulation(testing::scene_of(DraggedCube::body()), literal(true));
+  const auto hand_at = [](double t) { return DraggedCube::hand(t, kDepth, kPrintedGain); };
   testing::play(simulation, 0.0, 0.55, kRate, hand_at);
   const BodyState start = simulation.state().bodies[0];
   Printed printed{start.pose.position.x(),
@@ -106,9 +80,9 @@ TEST(SeedLiteral, computes_the_penetration_phase_as_printed) {
 TEST(SeedLiteral, what_slides_is_drawn_farther_than_coulombs_law_would) {
   std::array<double, 2> moved{};
   for (const bool on : {true, false}) {
-    Simulation simulation(testing::scene_of(cube()), literal(on));
-    const double depth = on ? kDepth : kDepth - kRadius, gain = on ? kGain : 1.0;
-    testing::play(simulation, 0.0, 0.75, kRate, [&](double t) { return dragging(t, depth, gain); });
+    Simulation simulation(testing::scene_of(DraggedCube::body()), literal(on));
+    const double depth = on ? kDepth : kDepth - kRadius, gain = on ? kPrintedGain : 1.0;
+    testing::play(simulation, 0.0, 0.75, kRate, [&](double t) { return DraggedCube::hand(t, depth, gain); });
     moved[on ? 0 : 1] = simulation.state().bodies[0].pose.position.x();
     RecordProperty(on ? "as_printed_mm" : "as_read_mm", std::to_string(1e3 * moved[on ? 0 : 1]));
   }
@@ -120,7 +94,7 @@ TEST(SeedLiteral, puts_the_hand_by_eq_1_as_printed) {
   for (const bool on : {true, false}) {
     Configuration configuration = literal(on);
     configuration.filter.window = 3;
-    Simulation simulation(testing::scene_of(cube()), configuration);
+    Simulation simulation(testing::scene_of(DraggedCube::body()), configuration);
     testing::play(simulation, 0.0, 0.1, kRate, [](double) {
       return testing::finger(Vector3(0.3, 0.0, 0.2), Vector3(0.3, 0.02, 0.2), kRadius);
     });
@@ -139,8 +113,8 @@ TEST(SeedLiteral, strikes_without_a_spin) {
   Simulation simulation(testing::scene_of(body), configuration);
   constexpr double kSpeed = 0.5;
   testing::play(simulation, 0.0, 0.12, kRate, [](double t) {
-    const double x = (-kHalf - kRadius - kSpeed * (0.1 - t)) / kGain;
-    return testing::finger({x, 0.015 / kGain, 0.005}, {x, 0.015 / kGain, -0.005}, kRadius);
+    const double x = (-kHalf - kRadius - kSpeed * (0.1 - t)) / kPrintedGain;
+    return testing::finger({x, 0.015 / kPrintedGain, 0.005}, {x, 0.015 / kPrintedGain, -0.005}, kRadius);
   });
   EXPECT_NEAR(testing::object_twist(simulation).linear.x(), 1.5 * kSpeed, 1e-9);
   EXPECT_EQ(testing::object_twist(simulation).angular, Vector3(0, 0, 0));

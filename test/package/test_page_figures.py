@@ -11,7 +11,7 @@ PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file
 sys.path.insert(0, os.path.join(PACKAGE, "scripts"))
 import page_figures  # noqa: E402
 import page_recipes  # noqa: E402
-from page_recipes import engines, grasps, people, stability  # noqa: E402
+from page_recipes import engines, grasps, people, reliability, stability  # noqa: E402
 
 
 class Pages(unittest.TestCase):
@@ -165,6 +165,20 @@ class TestCutShort(unittest.TestCase):
             ("block", 16, 0.5, 2e-7), ("block", 64, 0.5, 1e-6))]
         self.assertEqual(engines.cut_short_figures(rows)["error"], "at most 1e-6 m/s at rest, 0.6 % of the change of velocity where "
                          "up to 16 bodies land on each other, and 21 to 25 % where more do")
+
+
+class TestReliability(unittest.TestCase):
+    def test_a_row_has_the_relay_s_times_and_each_answer_s_over_them(self):
+        printed = ("| | arrived | message [kB] | p50 [ms] | p99 [ms] | max [ms] |\n|---|---|---|---|---|---|\n"
+                   "| relay | 3600 of 3600 | 1.9 | 0.200 | 0.400 | 1.000 |\n"
+                   "| hand to objects | 3600 of 3600 | 0.3 | 0.300 | 0.500 | 1.000 |\n"
+                   "| hand to rendered_view | 3599 of 3600 | 2.7 | 0.250 | 0.600 | 1.000 |\n"
+                   "processor time a frame: interaction_node 211 us, relay 128 us: 1.6 times\n")
+        self.assertEqual(reliability.latency_row(printed), (
+            "0.200, 0.400", "`objects` 0.300, 0.500 (1.50, 1.25); `rendered_view` 0.250, 0.600 (1.25, 1.50); 3599 of 3600 frames",
+            "211, 128"))
+        with self.assertRaises(page_recipes.MeasurementError):
+            reliability.latency_row(printed.split("| hand")[0])
 
 
 class TestStability(unittest.TestCase):

@@ -104,6 +104,16 @@ class ExplainTest(Folders):
             self.assertIn('(contact/grasp_assist)', loss.text)
         self.assertNotIn('grasp_assist', self.loss(**WEAK).text)
 
+    def test_the_share_of_assist_is_its_force_over_that_and_what_contacts_applied_together(self):
+        def change(thing, until):
+            thing.assisted = (thing.time > until - 0.3) & (thing.time < until - 0.2)
+            thing.assist, thing.carried = 3.0 * thing.assisted, 1.0 + 0.0 * thing.carried
+        loss = self.told_again(change, **WEAK)
+        self.assertAlmostEqual(loss.assistance.force, 3.0)
+        self.assertAlmostEqual(loss.assistance.share, 0.75)
+        self.assertLess(loss.assistance.until, loss.until - 0.2)
+        self.assertIn('with 3 N on average, 75 % of what acted on it', loss.text)
+
     def test_a_hand_that_opens_has_opened_also_if_assist_supported_what_it_held(self):
         def change(thing, _):
             thing.assisted[:] = True

@@ -151,15 +151,14 @@ TEST(TargetMarks, that_are_reached_have_another_colour) {
   EXPECT_NE(array.markers.front().color.b, array.markers[2].color.b);
 }
 
-TEST(Markers, the_text_is_under_everything) {
-  Shown shown;
-  shown.scene.bodies[1].start.position.z() = -0.5;
-  Markers markers(shown.scene, shown.configuration);
-  MarkerArray array;
-  markers.update(shown.result, shown.state, std_msgs::Header(), array);
-  for (const Marker& marker : array.markers) {
-    if (marker.ns != "text") continue;
-    EXPECT_LT(marker.pose.position.z, -0.53);
+TEST(Markers, the_text_is_under_everything_and_under_the_hands_where_bodies_are_high) {
+  for (const auto& [lowest, text] : {std::pair(-0.5, -0.63), std::pair(2.0, 0.05)}) {
+    Shown shown;
+    for (Body& body : shown.scene.bodies) body.start.position.z() = 2.0;
+    shown.scene.bodies[1].start.position.z() = lowest;
+    Markers markers(shown.scene, shown.configuration);
+    markers.update(shown.result, shown.state, std_msgs::Header(), shown.array);
+    EXPECT_NEAR(shown.first("text").pose.position.z, text, 1e-9);
   }
 }
 
