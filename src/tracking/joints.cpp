@@ -94,23 +94,16 @@ double bone_radius(const HandJoints& joints, const PalmFit& fit, std::size_t fin
                         : fit.scale * (1e-3 * anatomy::kFingerRadii[finger]));
 }
 
-/// The finger's joints with the metacarpal's base filled in. The thumb has no metacarpal in the palm.
-std::array<std::optional<Vector3>, 5> complete_finger(const HandJoints& joints, const PalmFit& fit,
-                                                      std::size_t finger) {
+/// Joint i is the start of bone i and the end of bone i - 1, in the device's frame; capsules are in world. A
+/// missing base of a metacarpal is filled in; the thumb has no metacarpal in the palm. A bone without length
+/// has no direction, and is left out as if it were missing.
+void place_finger(const HandJoints& joints, const PalmFit& fit, std::size_t finger,
+                  const Pose& device_in_world, Hand& hand) {
   auto completed = joints.joints[finger];
   if (finger > 0 && !completed[0] && completed[1])
     completed[0] = fit.place(anatomy::kMetacarpalBases[finger - 1]);
-  return completed;
-}
-
-/// Joint i is the start of bone i and the end of bone i - 1, in the device's frame; capsules are in world. A
-/// bone without length has no direction, and is left out as if it were missing.
-void place_finger(const HandJoints& joints, const PalmFit& fit, std::size_t finger,
-                  const Pose& device_in_world, Hand& hand) {
-  const auto completed = complete_finger(joints, fit, finger);
   for (std::size_t bone = 0; bone < kBonesPerFinger; ++bone) {
-    const auto& start = completed[bone];
-    const auto& end = completed[bone + 1];
+    const auto &start = completed[bone], &end = completed[bone + 1];
     if (!start || !end || (*end - *start).norm() < kMinBoneLength) continue;
     hand.capsules[finger * kBonesPerFinger + bone] = {device_in_world * *start, device_in_world * *end,
                                                       bone_radius(joints, fit, finger, bone)};

@@ -191,52 +191,39 @@ constexpr double kFilterTransition = 0.2;
 
 using Assignment = std::array<int, kMaxHands>;  // slot -> index in the frame, -1: none
 
-template <typename Fits>
-void assign(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands, Fits fits,
-            Assignment& assignment) {
-  for (std::size_t slot = 0; slot < hands.size(); ++slot) {
-    for (int i = 0; i < static_cast<int>(seen.size()) && assignment[slot] < 0; ++i) {
-      const bool assigned = std::find(assignment.begin(), assignment.end(), i) != assignment.end();
-      if (!assigned && fits(hands[slot], seen[i])) assignment[slot] = i;
-    }
-  }
-}
-
 /// True for a free slot with a noise estimate of hands of this side.
 bool was_last_here(const HandTrack& track, const Hand& hand) {
   return !track.active && track.filter.noise.size > 0 && track.current.side == hand.side;
 }
 
-/// Applies criteria in order of certainty, each to all slots: id and side; id alone (a tracker that confuses
-/// left and right); a new id near a held hand; then free slots, those with the noise of this side first.
-/// Slots and hands are tried in order, so that equal frames give equal tracks.
+/// Criteria by which a hand continues a track, in order of certainty.
+constexpr bool (*kCriteria[])(const HandTrack&, const Hand&) = {
+    [](const HandTrack& track, const Hand& hand) {
+      return track.active && track.current.id == hand.id && track.current.side == hand.side;
+    },
+    // A tracker that confuses left and right.
+    [](const HandTrack& track, const Hand& hand) { return track.active && track.current.id == hand.id; },
+    // A new id near a held hand.
+    [](const HandTrack& track, const Hand& hand) {
+      return track.active && track.current.side == hand.side &&
+             (track.current.palm.position - hand.palm.position).norm() < kSameHandDistance;
+    },
+    // Free slots, those with the noise of this side first.
+    was_last_here,
+    [](const HandTrack& track, const Hand&) { return !track.active && track.filter.noise.size == 0; },
+    [](const HandTrack& track, const Hand&) { return !track.active; }};
+
+/// Applies each criterion to all slots before the next. Slots and hands are tried in order, so that equal
+/// frames give equal tracks.
 Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands) {
   Assignment assignment;
   assignment.fill(-1);
-  const auto same_id = [](const HandTrack& track, const Hand& hand) {
-    return track.active && track.current.id == hand.id;
-  };
-  assign(
-      seen, hands,
-      [&](const HandTrack& track, const Hand& hand) {
-        return same_id(track, hand) && track.current.side == hand.side;
-      },
-      assignment);
-  assign(seen, hands, same_id, assignment);
-  assign(
-      seen, hands,
-      [](const HandTrack& track, const Hand& hand) {
-        return track.active && track.current.side == hand.side &&
-               (track.current.palm.position - hand.palm.position).norm() < kSameHandDistance;
-      },
-      assignment);
-  assign(seen, hands, was_last_here, assignment);
-  assign(
-      seen, hands,
-      [](const HandTrack& track, const Hand&) { return !track.active && track.filter.noise.size == 0; },
-      assignment);
-  assign(
-      seen, hands, [](const HandTrack& track, const Hand&) { return !track.active; }, assignment);
+  for (const auto fits : kCriteria)
+    for (std::size_t slot = 0; slot < hands.size(); ++slot)
+      for (int i = 0; i < static_cast<int>(seen.size()) && assignment[slot] < 0; ++i) {
+        const bool assigned = std::find(assignment.begin(), assignment.end(), i) != assignment.end();
+        if (!assigned && fits(hands[slot], seen[i])) assignment[slot] = i;
+      }
   return assignment;
 }
 
@@ -357,10 +344,6 @@ void track_hands(const HandFrame& frame, const Configuration& configuration, std
       events.push_back({frame.stamp, EventKind::hand_found, -1, hand.id});
     }
   }
-}
-
-void check_filter(FilterKind kind) {
-  hand_filter(kind);
 }
 
 /// The new filter starts at rest from the last pose, with an unknown error. The old filter continues beside
