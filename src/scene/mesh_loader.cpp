@@ -33,35 +33,28 @@ class Collector {
 
   void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent) {
     const aiMatrix4x4 transform = parent * node.mTransformation;
-    const bool mirrored = (transform.Determinant() < 0) != (scale_.prod() < 0);
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*scene.mMeshes[node.mMeshes[i]], transform, mirrored);
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*scene.mMeshes[node.mMeshes[i]], transform);
     for (unsigned i = 0; i < node.mNumChildren; ++i) add(scene, *node.mChildren[i], transform);
   }
 
-  void add(const std::array<aiVector3D, 3>& corners) {
+  /// Adds a triangle, unless it is a point or a line. `mirrored`: its corners are listed clockwise.
+  void add(const std::array<aiVector3D, 3>& corners, bool mirrored) {
     std::array<int, 3> triangle;
     for (std::size_t k = 0; k < 3; ++k) triangle[k] = vertex(corners[k]);
-    add(triangle, scale_.prod() < 0);
+    if (mirrored != (scale_.prod() < 0)) std::swap(triangle[1], triangle[2]);
+    if (!is_degenerate(triangle)) mesh_.triangles.push_back(triangle);
   }
 
   TriangleMesh take() { return std::move(mesh_); }
 
  private:
-  void add(const aiMesh& part, const aiMatrix4x4& transform, bool mirrored) {
+  void add(const aiMesh& part, const aiMatrix4x4& transform) {
+    const bool mirrored = transform.Determinant() < 0;
     for (unsigned i = 0; i < part.mNumFaces; ++i) {
       const aiFace& face = part.mFaces[i];
-      if (face.mNumIndices != 3) continue;
-      std::array<int, 3> triangle;
-      for (int k = 0; k < 3; ++k) triangle[k] = vertex(transform * part.mVertices[face.mIndices[k]]);
-      add(triangle, mirrored);
+      const auto corner = [&](unsigned k) { return transform * part.mVertices[face.mIndices[k]]; };
+      if (face.mNumIndices == 3) add({{corner(0), corner(1), corner(2)}}, mirrored);
     }
-  }
-
-  void add(std::array<int, 3> triangle, bool mirrored) {
-    if (mirrored) std::swap(triangle[1], triangle[2]);
-    const bool is_point_or_line =
-        triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
-    if (!is_point_or_line) mesh_.triangles.push_back(triangle);
   }
 
   int vertex(const aiVector3D& place) {
@@ -115,22 +108,22 @@ void check_size(const std::string& file) {
                            std::to_string(kMaxBytes));
 }
 
-template <class Item>
-void append(const std::vector<Item>& items, std::string& bytes) {
+template <class Items>
+void append(const Items& items, std::string& bytes) {
   const std::uint64_t count = items.size();
   bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-  bytes.append(reinterpret_cast<const char*>(items.data()), count * sizeof(Item));
+  bytes.append(reinterpret_cast<const char*>(items.data()), count * sizeof *items.data());
 }
 
-template <class Item>
-std::vector<Item> taken(const std::string& bytes, std::size_t& at) {
+template <class Items>
+void take(const std::string& bytes, std::size_t& at, Items& items) {
   std::uint64_t count = 0;
   std::memcpy(&count, &bytes.at(at), sizeof count);
-  std::vector<Item> items(count);
-  if (count > 0)
-    std::memcpy(static_cast<void*>(items.data()), &bytes[at + sizeof count], count * sizeof(Item));
-  at += sizeof count + count * sizeof(Item);
-  return items;
+  at += sizeof count;
+  items.resize(count);
+  const std::size_t size = count * sizeof *items.data();
+  if (size > 0) std::memcpy(static_cast<void*>(items.data()), &bytes[at], size);
+  at += size;
 }
 
 /// An STL in the form that assimp reads. Binary: without bytes behind the triangles, which take 50 bytes each
@@ -155,32 +148,22 @@ std::string plain_stl(const std::string& file) {
   return bytes;
 }
 
-/// The numbers of a line, with a decimal point in any locale; empty if it contains anything else.
-std::optional<std::vector<double>> numbers_of(const char* c) {
-  static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
-  std::vector<double> numbers;
-  for (c += std::strspn(c, " \t"); *c != '\0'; c += std::strspn(c, " \t")) {
-    char* end = nullptr;
-    if (std::strspn(c, "+-.0123456789eE") != std::strcspn(c, " \t")) return std::nullopt;
-    numbers.push_back(strtod_l(c, &end, c_locale));
-    if (end != c + std::strcspn(c, " \t")) return std::nullopt;
-    c = end;
-  }
-  return numbers;
+/// A plain decimal number; nothing for "inf", "nan", and hexadecimal numbers, which other programs refuse.
+std::optional<double> decimal(const std::string& word) {
+  const bool plain = word.find_first_not_of("+-.0123456789eE") == std::string::npos;
+  return plain ? text::to_number(word) : std::nullopt;
 }
 
 /// Reads a face with vertices of the form V/T/N. Adds its triangle, or both triangles of a convex quadrangle.
 /// Returns false for any other face.
-bool read_face(const char* c, const std::vector<aiVector3D>& vertices,
+bool read_face(const std::vector<std::string>& words, const std::vector<aiVector3D>& vertices,
                std::vector<std::array<aiVector3D, 3>>& triangles) {
   std::vector<aiVector3D> face;
-  for (c += std::strspn(c, " \t"); *c != '\0'; c += std::strspn(c, " \t")) {
-    char* end = nullptr;
-    if (std::isdigit(static_cast<unsigned char>(*c)) == 0) return false;
-    const std::size_t vertex = std::strtoul(c, &end, 10) - 1;
+  for (const std::string& word : words) {
+    const bool plain = word[0] != '/' && word.find_first_not_of("/0123456789") == std::string::npos;
+    const std::size_t vertex = plain ? std::strtoul(word.c_str(), nullptr, 10) - 1 : vertices.size();
     if (vertex >= vertices.size()) return false;
     face.push_back(vertices[vertex]);
-    c = end + std::strspn(end, "/0123456789");
   }
   const auto normal = [&](int i, int j, int k) { return (face[j] - face[i]) ^ (face[k] - face[i]); };
   if (face.size() < 3 || face.size() > 4) return false;
@@ -202,20 +185,25 @@ bool read_piece(const std::string& file, Collector& collector) {
   for (std::string line; std::getline(lines, line);) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
     const std::string kind = line.substr(0, line.find_first_of(" \t"));
-    const char* const rest = line.c_str() + kind.size();
+    const std::vector<std::string> words = text::words(line.substr(kind.size()));
     if (kind == "v") {
-      const auto numbers = numbers_of(rest);
-      if (!numbers || numbers->size() != 3) return false;
-      vertices.emplace_back(ai_real((*numbers)[0]), ai_real((*numbers)[1]), ai_real((*numbers)[2]));
+      std::array<ai_real, 3> place{};
+      if (words.size() != place.size()) return false;
+      for (std::size_t i = 0; i < place.size(); ++i) {
+        const std::optional<double> number = decimal(words[i]);
+        if (!number) return false;
+        place[i] = ai_real(*number);
+      }
+      vertices.emplace_back(place[0], place[1], place[2]);
     } else if (kind == "f") {
-      if (!read_face(rest, vertices, triangles)) return false;
+      if (!read_face(words, vertices, triangles)) return false;
     } else if (kind == "o" || kind == "g" || kind == "usemtl" || kind == "mtllib") {
       if (!triangles.empty() || line.back() == '\\') return false;
     } else if (!line.empty() && kind != "vn" && kind != "vt" && kind != "s" && kind[0] != '#') {
       return false;
     }
   }
-  for (const auto& corners : triangles) collector.add(corners);
+  for (const auto& corners : triangles) collector.add(corners, false);
   return !triangles.empty();
 }
 
@@ -264,19 +252,18 @@ std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files) {
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     for (const MeshFile& file : files) {
       const LoadedMesh loaded = read(file, importer);
-      append(std::vector<char>(loaded.problem.begin(), loaded.problem.end()), all);
-      append(loaded.problem.empty() ? loaded.mesh.vertices : std::vector<Vector3>{}, all);
-      append(loaded.problem.empty() ? loaded.mesh.triangles : std::vector<std::array<int, 3>>{}, all);
+      append(loaded.problem, all);
+      append(loaded.mesh.vertices, all);
+      append(loaded.mesh.triangles, all);
     }
     return all;
   });
   std::vector<LoadedMesh> meshes(files.size());
   std::size_t at = 0;
   for (LoadedMesh& mesh : meshes) {
-    const std::vector<char> problem = taken<char>(bytes, at);
-    mesh.problem.assign(problem.begin(), problem.end());
-    mesh.mesh.vertices = taken<Vector3>(bytes, at);
-    mesh.mesh.triangles = taken<std::array<int, 3>>(bytes, at);
+    take(bytes, at, mesh.problem);
+    take(bytes, at, mesh.mesh.vertices);
+    take(bytes, at, mesh.mesh.triangles);
   }
   return meshes;
 }

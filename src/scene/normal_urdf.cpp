@@ -30,10 +30,7 @@ std::string in_quotes(const std::string& name) {
 
 std::vector<std::string> words_of(std::string text) {
   std::replace(text.begin(), text.end(), ',', ' ');
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
+  return text::words(text);
 }
 
 std::string trimmed(std::string text) {

@@ -21,7 +21,7 @@ const ShapeKind& kind_of(const std::string& name) {
 }
 
 /// XML of a link with that shape. It has no inertia, so the loader computes the shape's.
-PlacedLink placed_shape(const ObjectRequest& request) {
+LinkedBody placed_shape(const ObjectRequest& request) {
   const ShapeKind& kind = kind_of(request.shape);
   if (request.size.size() != kind.sizes.size()) {
     throw SceneError(kSource + ": size of a " + kind.name + " has " + std::to_string(request.size.size()) +
@@ -37,19 +37,19 @@ PlacedLink placed_shape(const ObjectRequest& request) {
   link->inertial = std::make_shared<urdf::Inertial>();
   link->inertial->mass = request.mass;
   link->name = request.name;
-  return {link, request.mass == 0.0, request.pose, {}};
+  return {{{link, Pose{}}}, request.mass == 0.0, request.pose};
 }
 
-PlacedLink placed_urdf(const ObjectRequest& request, UrdfDocument& document) {
+LinkedBody placed_urdf(const ObjectRequest& request, UrdfDocument& document) {
   document = parse_urdf(kSource, request.urdf);
-  PlacedLink placed = only_body(kSource, document);
+  LinkedBody placed = only_body(kSource, document);
   placed.in_world = request.pose;
   if (request.name.empty()) return placed;
-  auto renamed = std::make_shared<urdf::Link>(*placed.link);
+  auto renamed = std::make_shared<urdf::Link>(placed.link());
   const auto friction = document.friction.find(renamed->name);
   if (friction != document.friction.end()) document.friction[request.name] = friction->second;
   renamed->name = request.name;
-  placed.link = renamed;
+  placed.parts.front().link = renamed;
   return placed;
 }
 
@@ -67,7 +67,7 @@ void check_motion(const ObjectRequest& request) {
 Scene scene_of_body(const ObjectRequest& request, const SceneOptions& options) {
   check_motion(request);
   UrdfDocument document;
-  PlacedLink placed = request.urdf.empty() ? placed_shape(request) : placed_urdf(request, document);
+  LinkedBody placed = request.urdf.empty() ? placed_shape(request) : placed_urdf(request, document);
   placed.in_world.orientation.normalize();
   Scene scene;
   read_body(kSource, request.folder, document, placed, options, scene);

@@ -74,19 +74,18 @@ class BodyReader {
              UrdfDocument& document)
       : source_(source), options_(options), shapes_(shapes), document_(document) {}
 
-  Body read(const PlacedLink& placed) {
-    const urdf::Link& link = *placed.link;
+  Body read(const LinkedBody& linked) {
+    const std::vector<LinkPart>& parts = linked.parts;
+    const urdf::Link& link = linked.link();
     if (!is_name(link.name)) fail(link, std::string("this name is not allowed; allowed: ") + kNameIs);
     Body body;
     body.name = link.name;
-    body.fixed = placed.fixed;
+    body.fixed = linked.fixed;
     body.material = options_.default_material;
-    std::vector<LinkPart> parts{{placed.link, Pose{}}};
-    parts.insert(parts.end(), placed.merged.begin(), placed.merged.end());
     read_collisions(parts, body);
     for (const LinkPart& part : parts) read_friction(part.link->name, body);
     if (!body.fixed) weigh(parts, body);
-    body.start = placed.in_world * body.link_in_body.inverse();
+    body.start = linked.in_world * body.link_in_body.inverse();
     for (const LinkPart& part : parts) read_visuals(part, body);
     if (body.visuals.empty())
       for (const PlacedShape& shape : body.shapes) body.visuals.push_back({shape.shape, shape.pose});
@@ -273,17 +272,15 @@ class BodyReader {
 };
 
 void read_bodies(const std::string& source, const std::string& folder, UrdfDocument& document,
-                 const std::vector<PlacedLink>& placed, const SceneOptions& options, Scene& scene) {
+                 const std::vector<LinkedBody>& bodies, const SceneOptions& options, Scene& scene) {
   ShapeReader shapes(source, folder, options, document.warnings);
   BodyReader reader(source, options, shapes, document);
   std::vector<urdf::LinkConstSharedPtr> links;
-  for (const PlacedLink& body : placed) {
-    links.push_back(body.link);
-    for (const LinkPart& part : body.merged) links.push_back(part.link);
-  }
+  for (const LinkedBody& body : bodies)
+    for (const LinkPart& part : body.parts) links.push_back(part.link);
   shapes.prepare(links);
-  for (const PlacedLink& body : placed)
-    if (!body.fixed || has_shape(body)) scene.bodies.push_back(reader.read(body));
+  for (const LinkedBody& body : bodies)
+    if (!body.fixed || body.has_shape()) scene.bodies.push_back(reader.read(body));
   scene.mesh_files = shapes.files();
 }
 
@@ -324,26 +321,26 @@ void widen_bounds(Scene& scene) {
 void read_urdf(const std::string& source, const std::string& folder, const std::string& xml,
                const SceneOptions& options, Scene& scene) {
   UrdfDocument document = parse_urdf(source, xml);
-  read_bodies(source, folder, document, place_links(source, document), options, scene);
+  read_bodies(source, folder, document, linked_bodies(source, document), options, scene);
   if (scene.bodies.empty()) throw SceneError(source + ": no bodies; allowed: at least one link with a shape");
   scene.joints = read_joints(source, document, scene);
   scene.warnings = document.warnings.lines();
 }
 
 void read_body(const std::string& source, const std::string& folder, UrdfDocument& document,
-               const PlacedLink& placed, const SceneOptions& options, Scene& scene) {
-  read_bodies(source, folder, document, {placed}, options, scene);
+               const LinkedBody& linked, const SceneOptions& options, Scene& scene) {
+  read_bodies(source, folder, document, {linked}, options, scene);
   scene.warnings = document.warnings.lines();
 }
 
-PlacedLink only_body(const std::string& source, UrdfDocument& document) {
-  std::vector<PlacedLink> found;
-  for (const PlacedLink& placed : place_links(source, document))
-    if (has_shape(placed)) found.push_back(placed);
+LinkedBody only_body(const std::string& source, UrdfDocument& document) {
+  std::vector<LinkedBody> found;
+  for (const LinkedBody& body : linked_bodies(source, document))
+    if (body.has_shape()) found.push_back(body);
   if (found.size() != 1)
     throw SceneError(source + ": this URDF has " + (found.empty() ? "no link" : "several links") +
                      " with a shape; allowed: one");
-  const urdf::Joint& joint = *found.front().link->parent_joint;
+  const urdf::Joint& joint = *found.front().link().parent_joint;
   if (moves(joint))
     throw SceneError(source + ": joint '" + text::one_line(joint.name, 60) +
                      "' turns or slides; allowed: floating, fixed");

@@ -181,9 +181,9 @@ void append(const TriangleMesh& mesh, const Pose& pose, TriangleMesh& all) {
   for (const auto& t : mesh.triangles) all.triangles.push_back({{t[0] + first, t[1] + first, t[2] + first}});
 }
 
-Eigen::AlignedBox3d box_around(const TriangleMesh& mesh) {
+Eigen::AlignedBox3d box_around(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& triangles) {
   Eigen::AlignedBox3d box;
-  for (const auto& triangle : mesh.triangles)
+  for (const auto& triangle : triangles)
     for (const int v : triangle) box.extend(mesh.vertices[v]);
   return box;
 }

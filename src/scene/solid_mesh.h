@@ -67,8 +67,16 @@ TriangleMesh cut_out(const TriangleMesh& mesh, const std::vector<std::array<int,
 /// Adds a mesh at a pose in the frame of `all`, without its `parts`.
 void append(const TriangleMesh& mesh, const Pose& pose, TriangleMesh& all);
 
-/// Bounding box of a mesh in its frame, and of a shape in the frame of its pose [m].
-Eigen::AlignedBox3d box_around(const TriangleMesh& mesh);
+/// True for a triangle that is a point or a line.
+inline bool is_degenerate(const std::array<int, 3>& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/// Bounding box of triangles or a whole mesh in its frame, and of a shape in the frame of its pose [m].
+Eigen::AlignedBox3d box_around(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& triangles);
+inline Eigen::AlignedBox3d box_around(const TriangleMesh& mesh) {
+  return box_around(mesh, mesh.triangles);
+}
 Eigen::AlignedBox3d box_around(const PlacedShape& shape);
 
 /// A shape's surface in the frame of its pose: a mesh as it is, a round shape as facets inside it.

@@ -85,20 +85,20 @@ struct LinkPart {
   Pose pose;
 };
 
-/// A body: a link below the root, and those that fixed joints connect to it.
-struct PlacedLink {
-  urdf::LinkConstSharedPtr link;
-  bool fixed;     ///< connected to the root by fixed joints only, or of mass 0
-  Pose in_world;  ///< pose of the link's frame with all joints at 0; the root is the world
-  std::vector<LinkPart>
-      merged;  ///< other links of the body; empty for a fixture, each of whose links is a fixture
-};
+/// A body: a link below the root, and those that fixed joints connect to it. Each link of a fixture is a
+/// body.
+struct LinkedBody {
+  std::vector<LinkPart> parts;  ///< at least one
+  bool fixed;                   ///< connected to the root by fixed joints only, or of mass 0
+  Pose in_world;  ///< pose of the first link's frame with all joints at 0; the root is the world
 
-bool has_shape(const PlacedLink& placed);
+  const urdf::Link& link() const { return *parts.front().link; }
+  bool has_shape() const;
+};
 
 /// All bodies, in the order of their first links in the URDF. Throws SceneError for joints of a kind that a
 /// scene cannot have.
-std::vector<PlacedLink> place_links(const std::string& urdf_file, UrdfDocument& document);
+std::vector<LinkedBody> linked_bodies(const std::string& urdf_file, UrdfDocument& document);
 
 /// The moving joints of a URDF between the bodies of the scene, in the order of their links. They start at 0,
 /// or at the limit nearest to it. Throws SceneError.
@@ -150,10 +150,10 @@ void read_urdf(const std::string& source, const std::string& folder, const std::
 
 /// Adds one body of a URDF to the scene, likewise.
 void read_body(const std::string& source, const std::string& folder, UrdfDocument& document,
-               const PlacedLink& placed, const SceneOptions& options, Scene& scene);
+               const LinkedBody& linked, const SceneOptions& options, Scene& scene);
 
 /// The only body of a URDF that has a shape. Throws SceneError if there are none or several.
-PlacedLink only_body(const std::string& source, UrdfDocument& document);
+LinkedBody only_body(const std::string& source, UrdfDocument& document);
 
 /// Calls arrange_joints(), but throws SceneError.
 void join_bodies(const std::string& source, Scene& scene);

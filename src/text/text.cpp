@@ -49,6 +49,11 @@ std::string vector(const Vector3& value) {
   return "[" + number(value.x()) + ", " + number(value.y()) + ", " + number(value.z()) + "]";
 }
 
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> fields;
   std::size_t begin = 0;

@@ -51,6 +51,9 @@ auto* find_named(Items& items, std::string_view name) {
   return found == std::end(items) ? nullptr : &*found;
 }
 
+/// The words of a text, which blanks and line breaks separate.
+std::vector<std::string> words(const std::string& text);
+
 /// Splits at commas.
 std::vector<std::string> split(const std::string& text);
 
