@@ -14,8 +14,7 @@ namespace {
 using namespace joint_ranges;
 
 [[noreturn]] void refuse(const Joint& joint, const std::string& what, const std::string& allowed) {
-  throw std::invalid_argument("joint '" + text::one_line(joint.name, 60) + "': " + what +
-                              "; allowed: " + allowed);
+  throw std::invalid_argument("joint " + text::quoted(joint.name) + ": " + what + "; allowed: " + allowed);
 }
 
 void check(const Joint& joint, const std::string& what, double value, const Range& allowed) {
@@ -100,8 +99,7 @@ void check_mechanism_sizes(const Scene& scene) {
     while (const Joint* above = joint_of(scene, first->parent)) first = above;
     const Body* const parent = first->parent == Joint::kWorld ? nullptr : &scene.bodies[first->parent];
     const bool floats = parent != nullptr && !parent->fixed;
-    const std::string which =
-        floats ? "body '" + parent->name + "'" : "joint '" + text::one_line(first->name, 60) + "'";
+    const std::string which = floats ? "body '" + parent->name + "'" : "joint " + text::quoted(first->name);
     if (++together[which] > kMaxConnectedJoints) {
       throw std::invalid_argument(
           "the mechanism of " + which + " has more than " + std::to_string(kMaxConnectedJoints) +

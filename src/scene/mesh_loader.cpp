@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
-#include <clocale>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -17,7 +16,6 @@
 #include <new>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
 
 #include "../text/files.h"
 #include "../text/text.h"
@@ -80,32 +78,25 @@ std::string lower_extension(const std::string& file) {
   return extension;
 }
 
-void check_format(const std::string& file) {
-  const std::string extension = lower_extension(file);
-  if (std::find(kFormats.begin(), kFormats.end(), extension) == kFormats.end())
-    throw std::runtime_error("is of the format '" + text::one_line(extension, 20) +
-                             "'; allowed: " + text::joined(kFormats));
-}
-
-/// Refuses the pointer that git stores in place of a large file that it has not fetched.
-void check_fetched(const std::string& file) {
-  const std::string pointer = "version https://git-lfs";
-  if (file_text(file, pointer.size()) == pointer)
-    throw std::runtime_error(
-        "is a pointer of Git LFS; allowed: the file itself, that 'git lfs pull' fetches");
-}
-
-/// Limits for reading meshes. A mesh with the largest number of triangles takes a second or two.
 constexpr std::uintmax_t kMaxBytes = 64u << 20;
 constexpr std::size_t kMaxTriangles = 500'000;
 constexpr ChildLimits kLimits{20, std::size_t(1) << 30, std::size_t(64) << 20};
 
-void check_size(const std::string& file) {
+/// Refuses a file of another format, one that is too large, and the pointer that git stores in place of a
+/// large file that it has not fetched.
+void check_file(const std::string& file) {
+  const std::string extension = lower_extension(file), pointer = "version https://git-lfs";
+  if (std::find(kFormats.begin(), kFormats.end(), extension) == kFormats.end())
+    throw std::runtime_error("is of the format " + text::quoted(extension, 20) +
+                             "; allowed: " + text::joined(kFormats));
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error || size <= kMaxBytes) return;
-  throw std::runtime_error("has " + std::to_string(size) + " bytes; allowed: at most " +
-                           std::to_string(kMaxBytes));
+  if (!error && size > kMaxBytes)
+    throw std::runtime_error("has " + std::to_string(size) + " bytes; allowed: at most " +
+                             std::to_string(kMaxBytes));
+  if (file_text(file, pointer.size()) == pointer)
+    throw std::runtime_error(
+        "is a pointer of Git LFS; allowed: the file itself, that 'git lfs pull' fetches");
 }
 
 template <class Items>
@@ -228,9 +219,7 @@ TriangleMesh read_by_assimp(const std::string& file, const Vector3& scale, Assim
 LoadedMesh read(const MeshFile& source, Assimp::Importer& importer) {
   LoadedMesh loaded;
   try {
-    check_format(source.file);
-    check_size(source.file);
-    check_fetched(source.file);
+    check_file(source.file);
     loaded.mesh = read_by_assimp(source.file, source.scale, importer);
     const std::size_t count = loaded.mesh.triangles.size();
     if (count == 0) throw std::runtime_error("has no triangles; allowed: at least one");

@@ -16,8 +16,8 @@ const std::string kSource = "spawn";  // in place of a file's name
 
 const ShapeKind& kind_of(const std::string& name) {
   if (const ShapeKind* kind = find_shape_kind(name)) return *kind;
-  throw SceneError(kSource + ": shape '" + text::one_line(name, 60) +
-                   "' is not known; allowed: " + shape_kind_names() + ", or a URDF in its place");
+  throw SceneError(kSource + ": shape " + text::quoted(name) +
+                   " is not known; allowed: " + shape_kind_names() + ", or a URDF in its place");
 }
 
 /// XML of a link with that shape. It has no inertia, so the loader computes the shape's.
@@ -83,15 +83,14 @@ Scene scene_of_body(const ObjectRequest& request, const SceneOptions& options) {
 
 void put_before(const std::string& name, Scene& scene) {
   if (name.empty()) return;
-  for (Body& body : scene.bodies) body.name = name + "_" + body.name;
-  for (Joint& joint : scene.joints) joint.name = name + "_" + joint.name;
-  const auto check = [](const std::string& made) {
-    if (!is_name(made))
-      throw SceneError(kSource + ": the name '" + text::one_line(made, 80) +
-                       "' is not allowed; allowed: " + kNameIs);
+  const auto rename = [&](std::string& own) {
+    own = name + "_" + own;
+    if (!is_name(own))
+      throw SceneError(kSource + ": the name " + text::quoted(own, 80) +
+                       " is not allowed; allowed: " + kNameIs);
   };
-  for (const Body& body : scene.bodies) check(body.name);
-  for (const Joint& joint : scene.joints) check(joint.name);
+  for (Body& body : scene.bodies) rename(body.name);
+  for (Joint& joint : scene.joints) rename(joint.name);
 }
 
 }  // namespace

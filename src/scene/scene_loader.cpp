@@ -101,32 +101,30 @@ class BodyReader {
   void read_collisions(const std::vector<LinkPart>& parts, Body& body) {
     of_parts_.assign(parts.size(), {});
     flat_ = false;
-    add_shapes(parts, &urdf::Link::collision_array, "collision ");
-    const auto has_none = [](const auto& shapes) { return shapes.empty(); };
-    if (!body.fixed && std::all_of(of_parts_.begin(), of_parts_.end(), has_none)) {
-      add_shapes(parts, &urdf::Link::visual_array, "visual ");
-      const bool none = std::all_of(of_parts_.begin(), of_parts_.end(), has_none);
-      if (none && moves(*parts[0].link->parent_joint)) return;  // a link of a mechanism
-      if (none)
-        fail(*parts[0].link, "a body that moves has no collision with a volume" +
-                                 std::string(flat_ ? ", its meshes are flat sheets" : "") +
-                                 "; allowed: 1 to 255 shapes");
-      document_.warnings.add("links without a collision touch with their visuals", "'" + body.name + "'");
-    }
-    for (const auto& shapes : of_parts_) body.shapes.insert(body.shapes.end(), shapes.begin(), shapes.end());
+    add_shapes(parts, &urdf::Link::collision_array, "collision ", body);
+    if (body.fixed || !body.shapes.empty()) return;
+    add_shapes(parts, &urdf::Link::visual_array, "visual ", body);
+    if (!body.shapes.empty())
+      return document_.warnings.add("links without a collision touch with their visuals",
+                                    "'" + body.name + "'");
+    if (!moves(*parts[0].link->parent_joint))  // else a link of a mechanism, which needs no shape
+      fail(*parts[0].link, "a body that moves has no collision with a volume" +
+                               std::string(flat_ ? ", its meshes are flat sheets" : "") +
+                               "; allowed: 1 to 255 shapes");
   }
 
   template <class Elements>
-  void add_shapes(const std::vector<LinkPart>& parts, Elements urdf::Link::*elements, const char* kind) {
+  void add_shapes(const std::vector<LinkPart>& parts, Elements urdf::Link::*elements, const char* kind,
+                  Body& body) {
     for (std::size_t i = 0; i < parts.size(); ++i) {
       int number = 0;
       for (const auto& element : *parts[i].link.*elements) {
         const std::string where = "link '" + parts[i].link->name + "' " + kind + std::to_string(++number);
-        if (!element->geometry) throw SceneError(source_ + ": " + where + ": no geometry; allowed: a shape");
         const auto shape = shapes_.read(*element->geometry, where, true);
-        if (shape) of_parts_[i].push_back({*shape, parts[i].pose * to_pose(element->origin)});
         flat_ = flat_ || !shape;
+        if (shape) of_parts_[i].push_back({*shape, parts[i].pose * to_pose(element->origin)});
       }
+      body.shapes.insert(body.shapes.end(), of_parts_[i].begin(), of_parts_[i].end());
     }
   }
 
@@ -201,7 +199,6 @@ class BodyReader {
     for (std::size_t i = 0; i < part.link->visual_array.size(); ++i) {
       const urdf::Visual& given = *part.link->visual_array[i];
       const std::string element = "link '" + part.link->name + "' visual " + std::to_string(i + 1);
-      if (!given.geometry) throw SceneError(source_ + ": " + element + ": no geometry; allowed: a shape");
       const std::optional<Shape> shape = shapes_.read(*given.geometry, element, false);
       if (!shape) continue;
       Visual visual{*shape, body.link_in_body * (part.pose * to_pose(given.origin))};
@@ -260,7 +257,7 @@ class BodyReader {
   }
 
   [[noreturn]] void fail(const urdf::Link& link, const std::string& what) const {
-    throw SceneError(source_ + ": link '" + text::one_line(link.name, 60) + "': " + what);
+    throw SceneError(source_ + ": link " + text::quoted(link.name) + ": " + what);
   }
 
   const std::string& source_;
@@ -342,8 +339,8 @@ LinkedBody only_body(const std::string& source, UrdfDocument& document) {
                      " with a shape; allowed: one");
   const urdf::Joint& joint = *found.front().link().parent_joint;
   if (moves(joint))
-    throw SceneError(source + ": joint '" + text::one_line(joint.name, 60) +
-                     "' turns or slides; allowed: floating, fixed");
+    throw SceneError(source + ": joint " + text::quoted(joint.name) +
+                     " turns or slides; allowed: floating, fixed");
   return found.front();
 }
 

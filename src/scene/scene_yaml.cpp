@@ -1,12 +1,9 @@
 #include "urdf.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "../text/text.h"
 #include "../text/yaml.h"
 #include "limits.h"
-#include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {

@@ -5,10 +5,8 @@
 #include <cstdint>
 #include <mutex>
 
-#include "../text/text.h"
 #include "../text/untrusted_input.h"
 #include "limits.h"
-#include "mr_hand_interaction/scene/scene_loader.h"
 #include "shape_kinds.h"
 
 namespace mrhi {
@@ -96,10 +94,9 @@ urdf::ModelInterfaceSharedPtr parsed(const std::string& xml) {
 void check_joints(const std::string& file, const urdf::ModelInterface& model) {
   for (const auto& [name, joint] : model.joints_)  // urdfdom refuses all types that are not listed here
     if (joint->type != urdf::Joint::FIXED && joint->type != urdf::Joint::FLOATING && !moves(*joint))
-      throw SceneError(
-          file + ": joint '" + text::one_line(name, 60) +
-          "' is planar; allowed: floating (a free body), fixed (a fixture, or a part of the body "
-          "that it is on), revolute, continuous, prismatic");
+      throw SceneError(file + ": joint " + text::quoted(name) +
+                       " is planar; allowed: floating (a free body), fixed (a fixture, or a part of the body "
+                       "that it is on), revolute, continuous, prismatic");
 }
 
 /// The first link from this one upwards for which `stops` is true, or the root, and the pose relative to it.
@@ -145,7 +142,7 @@ void set_parent(const UrdfDocument& document, const Scene& scene, const urdf::Jo
 
 Joint read_joint(const std::string& file, const UrdfDocument& document, const Scene& scene,
                  const urdf::Joint& given) {
-  const std::string what = file + ": joint '" + text::one_line(given.name, 60) + "': ";
+  const std::string what = file + ": joint " + text::quoted(given.name) + ": ";
   if (!is_name(given.name)) throw SceneError(what + "this name is not allowed; allowed: " + kNameIs);
   Joint joint;
   joint.name = given.name;

@@ -218,8 +218,7 @@ std::string ShapeReader::find_file(const std::string& uri) const {
   if (file.empty()) path = decoded(path), file = find_path(path);
   if (!file.empty()) return file;
   file = find_ignoring_case(folder_, path);
-  if (!file.empty())
-    warnings_.add("files are found by names in another case", "'" + text::one_line(uri, 200) + "'");
+  if (!file.empty()) warnings_.add("files are found by names in another case", text::quoted(uri, 200));
   return file;
 }
 
@@ -294,7 +293,7 @@ std::optional<Shape> ShapeReader::make(const std::string& name, const std::vecto
 /// A visual mesh may be missing: the collision shape is then drawn instead.
 std::optional<Shape> ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid) {
   const Named name = named(mesh);
-  const std::string what = "mesh '" + text::one_line(name.uri, 200) + "' ";
+  const std::string what = "mesh " + text::quoted(name.uri, 200) + " ";
   if (!name.scale.allFinite() || (name.scale.array() == 0).any())
     fail(element, "mesh scale " + text::vector(name.scale) +
                       " is not allowed; allowed: three numbers, none of them 0");
@@ -329,7 +328,7 @@ std::shared_ptr<const TriangleMesh> ShapeReader::solid_of(const Named& mesh, con
   TriangleMesh triangles = triangles_of(mesh);
   if (mesh.hull) triangles = convex_hull(triangles);
   for (const std::string& assumed : make_solid(triangles))
-    warnings_.add("a mesh " + assumed, element + " '" + text::one_line(mesh.uri, 100) + "'");
+    warnings_.add("a mesh " + assumed, element + " " + text::quoted(mesh.uri, 100));
   check_sizes(triangles, true);
   return std::make_shared<const TriangleMesh>(std::move(triangles));
 }

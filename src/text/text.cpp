@@ -76,6 +76,10 @@ std::string one_line(const std::string& text, std::size_t longest) {
   return line.size() <= longest ? line : line.substr(0, longest) + "...";
 }
 
+std::string quoted(const std::string& name, std::size_t longest) {
+  return "'" + one_line(name, longest) + "'";
+}
+
 std::string with_spaces(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;

@@ -60,6 +60,9 @@ std::vector<std::string> split(const std::string& text);
 /// Replaces line breaks by spaces and other control characters by '?'; truncates to `longest` characters.
 std::string one_line(const std::string& text, std::size_t longest = 300);
 
+/// The same in quotes, for a name in a message.
+std::string quoted(const std::string& name, std::size_t longest = 60);
+
 /// A name for display: without underscores.
 std::string with_spaces(std::string name);
 

@@ -49,22 +49,21 @@ class Tags {
       } else if (begins("<?xml")) {
         instruction();
       } else if (begins("<!")) {
-        declares_ = true;
+        declares = true;
         skip_to(">", 2);
       } else if (at_ + 1 < xml_.size() && begins_name(xml_[at_ + 1])) {
         tag();
       } else {
-        strange_ = true;
+        strange = true;
         ++at_;
       }
     }
   }
 
-  int deepest() const { return deepest_; }
-  std::size_t elements() const { return elements_; }
-  std::size_t attributes() const { return attributes_; }
-  bool declares() const { return declares_; }
-  bool strange() const { return strange_; }
+  std::size_t elements = 0, attributes = 0;  ///< of all tags, and the most of one
+  int deepest = 0;
+  bool declares = false;  ///< a document type
+  bool strange = false;   ///< a '<' that begins nothing known
 
  private:
   bool begins(const char* text) const { return xml_.compare(at_, std::string(text).size(), text) == 0; }
@@ -85,45 +84,42 @@ class Tags {
   /// place.
   void instruction() {
     skip_to(">", 5);
-    if (at_ < 2 || xml_[at_ - 2] != '?') strange_ = true;
+    if (at_ < 2 || xml_[at_ - 2] != '?') strange = true;
   }
 
   /// A '>' in quotes does not end a tag.
   void tag() {
     const bool closes = begins("</");
     char quote = 0;
-    std::size_t attributes = 0;
+    std::size_t here = 0;
     for (++at_; at_ < xml_.size() && (quote || xml_[at_] != '>'); ++at_) {
-      if (!quote && xml_[at_] == '=') ++attributes;
+      if (!quote && xml_[at_] == '=') ++here;
       if (quote ? xml_[at_] == quote : xml_[at_] == '"' || xml_[at_] == '\'') quote = quote ? 0 : xml_[at_];
     }
-    attributes_ = std::max(attributes_, attributes);
+    attributes = std::max(attributes, here);
     if (closes) {
       depth_ = std::max(0, depth_ - 1);
       return;
     }
-    ++elements_;
-    deepest_ = std::max(deepest_, depth_ + 1);
+    ++elements;
+    deepest = std::max(deepest, depth_ + 1);
     if (xml_[at_ - 1] != '/') ++depth_;
   }
 
   const std::string& xml_;
-  std::size_t at_ = 0, elements_ = 0, attributes_ = 0;
-  int depth_ = 0, deepest_ = 0;
-  bool declares_ = false, strange_ = false;
+  std::size_t at_ = 0;
+  int depth_ = 0;
 };
 
 constexpr char kDone = 'd', kFailed = 'f';
 
 // Sanitizers reserve terabytes of address space.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kMemoryIsLimited = false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kMemoryIsLimited = false;
-#else
-constexpr bool kMemoryIsLimited = true;
+#ifndef __has_feature  // clang's
+#define __has_feature(name) 0
 #endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || __has_feature(address_sanitizer) || \
+    __has_feature(thread_sanitizer)
+constexpr bool kMemoryIsLimited = false;
 #else
 constexpr bool kMemoryIsLimited = true;
 #endif
@@ -213,15 +209,15 @@ std::optional<std::string> xml_danger(const std::string& xml) {
     return "is no text; allowed: UTF-8 or ISO-8859-1 without control characters";
   Tags tags(xml);
   tags.follow();
-  if (tags.declares()) return "has a document type; allowed: none";
-  if (tags.strange())
+  if (tags.declares) return "has a document type; allowed: none";
+  if (tags.strange)
     return "has a '<' that begins nothing known; allowed: elements, comments, CDATA and <?xml ...?>";
-  if (tags.deepest() > kDeepest)
+  if (tags.deepest > kDeepest)
     return "elements are nested deeper than " + std::to_string(kDeepest) + " levels; allowed: at most that";
-  if (tags.elements() > kMaxElements)
-    return std::to_string(tags.elements()) + " elements; allowed: at most " + std::to_string(kMaxElements);
-  if (tags.attributes() > kMaxAttributes)
-    return "an element has " + std::to_string(tags.attributes()) + " attributes; allowed: at most " +
+  if (tags.elements > kMaxElements)
+    return std::to_string(tags.elements) + " elements; allowed: at most " + std::to_string(kMaxElements);
+  if (tags.attributes > kMaxAttributes)
+    return "an element has " + std::to_string(tags.attributes) + " attributes; allowed: at most " +
            std::to_string(kMaxAttributes);
   return {};
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "../text/text.h"
 #include "hand_anatomy.h"
@@ -262,8 +261,7 @@ const JointOrder* usual_order(std::size_t size) {
 
 const JointOrder& joint_order(const std::string& name) {
   if (const JointOrder* const order = text::find_named(joint_orders(), name)) return *order;
-  throw std::invalid_argument("order '" + text::one_line(name, 60) +
-                              "' is not known; allowed: " + names_of(0));
+  throw std::invalid_argument("order " + text::quoted(name) + " is not known; allowed: " + names_of(0));
 }
 
 HandJoints hand_in_order(const JointOrder& order, const Vector3* points, const float* radii, Side side) {

@@ -9,7 +9,6 @@
 #include "../math/registration.h"
 #include "../text/text.h"
 #include "mr_hand_interaction/stamp_check.h"
-#include "mr_hand_interaction/tracking/hand_merger.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {

@@ -6,7 +6,6 @@
 
 #include "../math/minimum_jerk.h"
 #include "../math/rotation.h"
-#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
