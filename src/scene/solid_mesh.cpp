@@ -310,7 +310,8 @@ void put(std::vector<Triangles> parts, TriangleMesh& mesh) {
     for (const Triangles& cavity : solid.cavities)
       mesh.triangles.insert(mesh.triangles.end(), cavity.begin(), cavity.end());
   }
-  if (mesh.parts.size() < 2 || !overlaps_itself(mesh)) mesh.parts.clear();
+  const bool overlap = mesh.parts.size() > 1 && shared_moments(mesh, signed_volume(mesh)).volume > 0.0;
+  if (!overlap) mesh.parts.clear();
 }
 
 bool are_solid(const TriangleMesh& mesh, const std::vector<Triangles>& parts) {
@@ -418,20 +419,19 @@ std::vector<std::string> make_solid(TriangleMesh& mesh) {
 }
 
 std::vector<PlacedShape> with_meshes_joined(const std::vector<PlacedShape>& shapes) {
-  const auto is_mesh = [](const PlacedShape& placed) { return std::holds_alternative<Mesh>(placed.shape); };
-  if (std::count_if(shapes.begin(), shapes.end(), is_mesh) < 2) return shapes;
+  if (std::count_if(shapes.begin(), shapes.end(), mesh_of) < 2) return shapes;
   std::vector<PlacedShape> joined;
   auto all = std::make_shared<TriangleMesh>();
   for (const PlacedShape& placed : shapes) {
-    if (!is_mesh(placed)) {
+    const TriangleMesh* const mesh = mesh_of(placed);
+    if (mesh == nullptr) {
       joined.push_back(placed);
       continue;
     }
-    const TriangleMesh& mesh = *std::get<Mesh>(placed.shape).triangles;
     const int first = static_cast<int>(all->triangles.size());
-    for (const int part : mesh.parts.empty() ? std::vector<int>{0} : mesh.parts)
+    for (const int part : mesh->parts.empty() ? std::vector<int>{0} : mesh->parts)
       all->parts.push_back(first + part);
-    append(mesh, placed.pose, *all);
+    append(*mesh, placed.pose, *all);
   }
   joined.push_back({Mesh{all, "", Vector3::Ones()}, Pose{}});
   return joined;

@@ -43,6 +43,12 @@ double signed_volume(const TriangleMesh& mesh);
 /// The convex hull of a mesh's vertices, by qhull. Throws NoVolume.
 TriangleMesh convex_hull(const TriangleMesh& mesh);
 
+/// The shape's triangles; null if it is no mesh.
+inline const TriangleMesh* mesh_of(const PlacedShape& placed) {
+  const Mesh* const mesh = std::get_if<Mesh>(&placed.shape);
+  return mesh == nullptr ? nullptr : mesh->triangles.get();
+}
+
 /// Joins all meshes into one, with a part for each, so that there is one tree to search.
 std::vector<PlacedShape> with_meshes_joined(const std::vector<PlacedShape>& shapes);
 
@@ -81,8 +87,5 @@ Eigen::AlignedBox3d box_around(const PlacedShape& shape);
 
 /// A shape's surface in the frame of its pose: a mesh as it is, a round shape as facets inside it.
 TriangleMesh surface_of(const PlacedShape& shape);
-
-/// True if closed parts of the mesh overlap.
-bool overlaps_itself(const TriangleMesh& mesh);
 
 }  // namespace mrhi

@@ -14,33 +14,8 @@
 namespace mrhi {
 namespace {
 
-struct Correspondences {
-  std::array<Vector3, 10> anatomical, measured;
-  std::size_t size = 0;
-
-  void add(const Vector3& anatomical_point, const std::optional<Vector3>& measured_point) {
-    if (!measured_point) return;
-    anatomical[size] = anatomical_point;
-    measured[size++] = *measured_point;
-  }
-};
-
 Vector3 mirrored(const Vector3& point, Side side) {
   return side == Side::left ? Vector3(point.x(), -point.y(), point.z()) : point;
-}
-
-/// The wrist moves relative to the palm, so it is used only if the metacarpals' bases are unknown.
-Correspondences correspondences(const HandJoints& hand) {
-  Correspondences points;
-  points.add(Vector3::Zero(), hand.palm_centre);
-  for (std::size_t i = 0; i < 4; ++i) {
-    points.add(mirrored(anatomy::kMetacarpalBases[i], hand.side), hand.joints[i + 1][0]);
-  }
-  const bool bases_known = points.size > (hand.palm_centre ? 1u : 0u);
-  for (std::size_t i = 0; i < 4; ++i)
-    points.add(mirrored(anatomy::kKnuckles[i], hand.side), hand.joints[i + 1][1]);
-  if (!bases_known) points.add(mirrored(anatomy::kWrist, hand.side), hand.wrist);
-  return points;
 }
 
 /// Fit of the anatomical palm in the device's frame.
@@ -54,14 +29,27 @@ struct PalmFit {
 };
 
 /// The rotation, scale and translation that map the anatomical palm onto the given joints by least squares.
-/// Empty if they do not determine it: fewer than three, collinear, or not of a hand's size.
+/// Empty if they do not determine it: fewer than three, collinear, or not of a hand's size. The wrist moves
+/// relative to the palm, so it is used only if the metacarpals' bases are unknown.
 ///
 ///     sum |s R a_i + t - m_i|^2 -> min,   t = mean m - s R mean a
 /// over a scale s, a rotation R and a place t, a_i of the adult's palm, m_i measured in the device's frame
 /// (Umeyama 1991). A left hand is fitted to the mirrored palm, not by a reflection: R is a rotation for both.
 std::optional<PalmFit> fit_palm(const HandJoints& hand) {
-  const Correspondences points = correspondences(hand);
-  const auto found = registered(points.anatomical.data(), points.measured.data(), points.size);
+  std::array<Vector3, 10> anatomical, measured;
+  std::size_t size = 0;
+  const auto add = [&](const Vector3& point, const std::optional<Vector3>& seen) {
+    if (!seen) return;
+    anatomical[size] = mirrored(point, hand.side);
+    measured[size++] = *seen;
+  };
+  add(Vector3::Zero(), hand.palm_centre);
+  const std::size_t before = size;
+  for (std::size_t i = 0; i < 4; ++i) add(anatomy::kMetacarpalBases[i], hand.joints[i + 1][0]);
+  const bool bases_known = size > before;
+  for (std::size_t i = 0; i < 4; ++i) add(anatomy::kKnuckles[i], hand.joints[i + 1][1]);
+  if (!bases_known) add(anatomy::kWrist, hand.wrist);
+  const auto found = registered(anatomical.data(), measured.data(), size);
   if (!found) return std::nullopt;
   PalmFit fit;
   fit.side = hand.side;
