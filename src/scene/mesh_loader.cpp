@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -73,9 +72,7 @@ class Collector {
 const std::vector<std::string> kFormats{".stl", ".obj", ".dae", ".ply", ".gltf", ".glb", ".off", ".3ds"};
 
 std::string lower_extension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
+  return text::in_lower_case(std::filesystem::path(file).extension().string());
 }
 
 constexpr std::uintmax_t kMaxBytes = 64u << 20;
@@ -133,10 +130,7 @@ std::string plain_stl(const std::string& file) {
                              " bytes, its header stands for " + std::to_string(whole) +
                              "; allowed: a whole STL");
   bytes.erase(0, bytes.find_first_not_of(" \t\r\n"));
-  if (bytes.compare(0, 5, "SOLID") == 0) {
-    for (char& c : bytes) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return bytes;
+  return bytes.compare(0, 5, "SOLID") == 0 ? text::in_lower_case(bytes) : bytes;
 }
 
 /// A plain decimal number; nothing for "inf", "nan", and hexadecimal numbers, which other programs refuse.

@@ -39,7 +39,7 @@ class Complaints : public console_bridge::OutputHandler {
 };
 
 /// Appends a character as UTF-8.
-void append(std::uint32_t code, std::string& utf8) {
+void append_utf8(std::uint32_t code, std::string& utf8) {
   const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;  // continuation bytes
   constexpr std::uint32_t kFirst[] = {0, 0xC0, 0xE0, 0xF0};
   utf8 += static_cast<char>(kFirst[more] | code >> 6 * more);
@@ -49,7 +49,7 @@ void append(std::uint32_t code, std::string& utf8) {
 /// UTF-8 from ISO-8859-1, in which each byte is the character's code point.
 std::string from_latin1(const std::string& text) {
   std::string utf8;
-  for (const char c : text) append(static_cast<unsigned char>(c), utf8);
+  for (const char c : text) append_utf8(static_cast<unsigned char>(c), utf8);
   return utf8;
 }
 
@@ -67,7 +67,7 @@ std::optional<std::string> from_utf16(const std::string& text) {
     std::uint32_t code = unit(at);
     if (code >= 0xD800 && code < 0xDC00 && at + 3 < text.size())
       code = 0x10000 + ((code & 0x3FF) << 10 | (unit(at += 2) & 0x3FF));
-    append(code, utf8);
+    append_utf8(code, utf8);
   }
   return utf8;
 }

@@ -129,11 +129,6 @@ std::string find_above(const fs::path& folder, const std::string& in_package) {
   return "";
 }
 
-std::string in_lower_case(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-  return name;
-}
-
 /// A file below a folder whose path differs from `path` in case only; empty if there is none.
 std::string find_ignoring_case(fs::path folder, const std::string& path) {
   for (const fs::path& part : fs::path(path).relative_path()) {
@@ -145,7 +140,7 @@ std::string find_ignoring_case(fs::path folder, const std::string& path) {
     std::string found;  // the alphabetically first
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
       const std::string name = entry.path().filename().string();
-      if (in_lower_case(name) == in_lower_case(part.string()) && (found.empty() || name < found))
+      if (text::in_lower_case(name) == text::in_lower_case(part.string()) && (found.empty() || name < found))
         found = name;
     }
     if (found.empty()) return "";

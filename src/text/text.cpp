@@ -3,6 +3,7 @@
 #include <locale.h>
 #include <stdlib.h>
 
+#include <cctype>
 #include <locale>
 #include <sstream>
 
@@ -78,6 +79,11 @@ std::string one_line(const std::string& text, std::size_t longest) {
 
 std::string quoted(const std::string& name, std::size_t longest) {
   return "'" + one_line(name, longest) + "'";
+}
+
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
 }
 
 std::string with_spaces(std::string name) {

@@ -63,6 +63,8 @@ std::string one_line(const std::string& text, std::size_t longest = 300);
 /// The same in quotes, for a name in a message.
 std::string quoted(const std::string& name, std::size_t longest = 60);
 
+std::string in_lower_case(std::string text);  ///< of ASCII letters
+
 /// A name for display: without underscores.
 std::string with_spaces(std::string name);
 

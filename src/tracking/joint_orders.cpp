@@ -276,8 +276,8 @@ HandJoints hand_in_order(const JointOrder& order, const Vector3* points, const f
     for (std::size_t b = 0; radii != nullptr && b < kBonesPerFinger; ++b) {
       if (places[b] == kNone || places[b + 1] == kNone) continue;
       const float start = radii[places[b]], end = radii[places[b + 1]];
-      const bool known = start > 0.0f && end > 0.0f;   // NaN is not
-      if (known) hand.bone_width[f][b] = start + end;  // twice their mean
+      const bool has_radii = start > 0.0f && end > 0.0f;   // NaN is not
+      if (has_radii) hand.bone_width[f][b] = start + end;  // twice their mean
     }
   }
   return hand;
