@@ -19,6 +19,7 @@
 #include "../text/files.h"
 #include "../text/text.h"
 #include "../text/untrusted_input.h"
+#include "mesh_file_system.h"
 
 namespace mrhi {
 namespace {
@@ -75,7 +76,6 @@ std::string lower_extension(const std::string& file) {
   return text::in_lower_case(std::filesystem::path(file).extension().string());
 }
 
-constexpr std::uintmax_t kMaxBytes = 64u << 20;
 constexpr std::size_t kMaxTriangles = 500'000;
 constexpr ChildLimits kLimits{20, std::size_t(1) << 30, std::size_t(64) << 20};
 
@@ -88,9 +88,9 @@ void check_file(const std::string& file) {
                              "; allowed: " + text::joined(kFormats));
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (!error && size > kMaxBytes)
+  if (!error && size > kMaxMeshBytes)
     throw std::runtime_error("has " + std::to_string(size) + " bytes; allowed: at most " +
-                             std::to_string(kMaxBytes));
+                             std::to_string(kMaxMeshBytes));
   if (file_text(file, pointer.size()) == pointer)
     throw std::runtime_error(
         "is a pointer of Git LFS; allowed: the file itself, that 'git lfs pull' fetches");
@@ -114,10 +114,24 @@ void take(const std::string& bytes, std::size_t& at, Items& items) {
   at += size;
 }
 
+void append(const std::vector<std::string>& texts, std::string& bytes) {
+  const std::uint64_t count = texts.size();
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  for (const std::string& text : texts) append(text, bytes);
+}
+
+void take(const std::string& bytes, std::size_t& at, std::vector<std::string>& texts) {
+  std::uint64_t count = 0;
+  std::memcpy(&count, &bytes.at(at), sizeof count);
+  at += sizeof count;
+  texts.resize(count);
+  for (std::string& text : texts) take(bytes, at, text);
+}
+
 /// An STL in the form that assimp reads. Binary: without bytes behind the triangles, which take 50 bytes each
 /// from byte 84 on. Text: in lower case, without leading blanks.
 std::string plain_stl(const std::string& file) {
-  std::string bytes = file_text(file, kMaxBytes).value_or("");
+  std::string bytes = file_text(file, kMaxMeshBytes).value_or("");
   std::uint32_t count = 0;
   if (bytes.size() >= 84) std::memcpy(&count, &bytes[80], sizeof count);
   const std::uint64_t whole = 84 + std::uint64_t(50) * count;
@@ -193,37 +207,42 @@ bool read_piece(const std::string& file, Collector& collector) {
 }
 
 /// Call within limits only: assimp has none, and a small file may expand to an endless scene.
-TriangleMesh read_by_assimp(const std::string& file, const Vector3& scale, Assimp::Importer& importer) {
-  Collector collector(scale);
-  if (lower_extension(file) == ".obj" && read_piece(file, collector)) return collector.take();
+LoadedMesh read_by_assimp(const MeshFile& source, Assimp::Importer& importer) {
+  const std::string& file = source.file;
+  Collector collector(source.scale);
+  if (lower_extension(file) == ".obj" && read_piece(file, collector)) return {collector.take(), "", {}};
+  auto* const files = new MeshFileSystem(file);
+  importer.SetIOHandler(files);  // owns it
   const std::string stl = lower_extension(file) == ".stl" ? plain_stl(file) : "";
   const aiScene* scene =
       stl.empty() ? importer.ReadFile(file, aiProcess_Triangulate)
                   : importer.ReadFileFromMemory(stl.data(), stl.size(), aiProcess_Triangulate, "stl");
   const std::string problem = importer.GetErrorString();
   if (problem.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
-  if (!scene || !scene->mRootNode) {
+  const bool is_read = scene != nullptr && scene->mRootNode != nullptr;
+  if (!is_read && !files->refusal().empty()) throw std::runtime_error(files->refusal());
+  if (!is_read) {
     throw std::runtime_error("cannot be read: " + text::one_line(problem, 120) +
                              "; allowed: a whole STL, OBJ, DAE, PLY or glTF file");
   }
   collector.add(*scene, *scene->mRootNode, aiMatrix4x4());
-  return collector.take();
+  return {collector.take(), "", {files->opened().begin(), files->opened().end()}};
 }
 
 LoadedMesh read(const MeshFile& source, Assimp::Importer& importer) {
   LoadedMesh loaded;
   try {
     check_file(source.file);
-    loaded.mesh = read_by_assimp(source.file, source.scale, importer);
+    loaded = read_by_assimp(source, importer);
     const std::size_t count = loaded.mesh.triangles.size();
     if (count == 0) throw std::runtime_error("has no triangles; allowed: at least one");
     if (count > kMaxTriangles)
       throw std::runtime_error("has " + std::to_string(count) + " triangles; allowed: at most " +
                                std::to_string(kMaxTriangles));
   } catch (const std::bad_alloc&) {
-    loaded = {{}, "takes more memory than is allowed"};
+    loaded = {{}, "takes more memory than is allowed", {}};
   } catch (const std::exception& error) {
-    loaded = {{}, error.what()};
+    loaded = {{}, error.what(), {}};
   }
   return loaded;
 }
@@ -236,6 +255,7 @@ std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files) {
     for (const MeshFile& file : files) {
       const LoadedMesh loaded = read(file, importer);
       append(loaded.problem, all);
+      append(loaded.files, all);
       append(loaded.mesh.vertices, all);
       append(loaded.mesh.triangles, all);
     }
@@ -245,6 +265,7 @@ std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files) {
   std::size_t at = 0;
   for (LoadedMesh& mesh : meshes) {
     take(bytes, at, mesh.problem);
+    take(bytes, at, mesh.files);
     take(bytes, at, mesh.mesh.vertices);
     take(bytes, at, mesh.mesh.triangles);
   }
@@ -259,7 +280,7 @@ std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files) {
   try {
     return read_in_child(files);
   } catch (const std::runtime_error& error) {
-    if (files.size() == 1) return {{{}, error.what()}};
+    if (files.size() == 1) return {{{}, error.what(), {}}};
   }
   std::vector<LoadedMesh> meshes;
   meshes.reserve(files.size());

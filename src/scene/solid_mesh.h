@@ -17,11 +17,13 @@ struct MeshFile {
 /// All triangles of a file, with coincident vertices joined; or the reason why it cannot be used.
 struct LoadedMesh {
   TriangleMesh mesh;
-  std::string problem;  ///< continues a message after the file's name; empty: none
+  std::string problem;             ///< continues a message after the file's name; empty: none
+  std::vector<std::string> files;  ///< other files that it was read from, relative to its folder
 };
 
 /// Reads the formats that assimp reads: STL, OBJ, DAE, PLY, glTF. Applies a DAE's unit, but not its up axis
-/// (as in rviz). A child process reads all files, with limits on sizes, time, memory and triangles.
+/// (as in rviz). Files that a mesh names are read in or below its folder only. A child process reads all
+/// files, with limits on sizes, time, memory and triangles.
 std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files);
 
 /// Error of a mesh that is flat or empty. what() continues a message after the mesh's name.

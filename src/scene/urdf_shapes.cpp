@@ -331,7 +331,13 @@ std::shared_ptr<const TriangleMesh> ShapeReader::solid_of(const Named& mesh, con
 const TriangleMesh& ShapeReader::triangles_of(const Named& mesh) {
   const LoadedMesh& found = loaded_.at(mesh.key());  // by prepare()
   if (!found.problem.empty()) throw std::runtime_error(found.problem);
-  if (text::find_named(files_, mesh.uri) == nullptr) files_.push_back({mesh.uri, mesh.file});
+  const auto note = [&](const std::string& name, const std::string& path) {
+    if (text::find_named(files_, name) == nullptr) files_.push_back({name, path});
+  };
+  note(mesh.uri, mesh.file);
+  for (const std::string& file : found.files)
+    note((fs::path(mesh.uri).parent_path() / file).string(),
+         (fs::path(mesh.file).parent_path() / file).string());
   return found.mesh;
 }
 

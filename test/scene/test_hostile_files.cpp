@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
+#include <filesystem>
 #include <regex>
 
 #include "mr_hand_interaction/parameters.h"
@@ -95,6 +98,63 @@ TEST(HostileYaml, given_as_text_is_refused_alike) {
     } catch (const ParameterError& error) {
       EXPECT_LT(std::string(error.what()).size(), 500u);
     }
+  }
+}
+
+/// A scene of one body of this mesh.
+std::string mesh_error(const test::Folder& folder, const std::string& mesh) {
+  return test::scene_error(folder.write(
+      "s.urdf", test::thing(std::string(test::kInertial) + "<collision><geometry><mesh filename=\"" + mesh +
+                            "\"/></geometry></collision>")));
+}
+
+// A scene goes to others, by topics, bags and saved files: a mesh of a stranger must not put files of this
+// machine into it. A pipe as a buffer waits without end.
+TEST(HostileMesh, reads_regular_files_in_its_folder_only) {
+  const test::Folder around;
+  std::filesystem::create_directories(around.path() + "/in/below");
+  around.write("secret.bin", test::gltf_buffer());
+  around.write("in/below/own.bin", test::gltf_buffer());
+  const std::string in = around.path() + "/in/";
+  std::filesystem::create_symlink("../secret.bin", in + "link.bin");
+  std::filesystem::create_symlink("below/own.bin", in + "inner.bin");
+  ASSERT_EQ(0, mkfifo((in + "pipe.bin").c_str(), 0600));
+  const auto error = [&](const std::string& buffer) {
+    around.write("in/part.gltf", test::gltf_of(buffer));
+    return mesh_error(around, "in/part.gltf");
+  };
+  EXPECT_EQ(error("below/own.bin"), "");
+  EXPECT_EQ(error("below/../inner.bin"), "");
+  for (const char* buffer : {"../secret.bin", "link.bin", "below/../../secret.bin"})
+    test::expect_words(error(buffer),
+                       {"mesh 'in/part.gltf' names the file '", "in the mesh's folder; allowed"});
+  test::expect_words(error("pipe.bin"), {"mesh 'in/part.gltf' names the file 'pipe.bin', which is no file"});
+  std::filesystem::resize_file(in + "below/own.bin", (64u << 20) + 1);
+  test::expect_words(error("below/own.bin"), {"names the file 'below/own.bin', which has 67108865 bytes"});
+  test::expect_words(error("none.bin"), {"mesh 'in/part.gltf' cannot be read", "none.bin"});
+}
+
+TEST(HostileMesh, that_is_a_symlink_reads_the_files_beside_its_target) {
+  const test::Folder folder;
+  std::filesystem::create_directories(folder.path() + "/source");
+  folder.write("source/part.gltf", test::gltf_of("part.bin"));
+  folder.write("source/part.bin", test::gltf_buffer());
+  std::filesystem::create_directories(folder.path() + "/installed");
+  for (const char* file : {"part.gltf", "part.bin"})
+    std::filesystem::create_symlink(std::string("../source/") + file, folder.path() + "/installed/" + file);
+  EXPECT_EQ(mesh_error(folder, "installed/part.gltf"), "");
+}
+
+// Colours are not used.
+TEST(HostileMesh, needs_no_materials_of_an_obj) {
+  const test::Folder folder;
+  const std::string obj =
+      "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\ng nothing\n";
+  ASSERT_EQ(0, mkfifo((folder.path() + "/pipe.mtl").c_str(), 0600));
+  folder.write("own.mtl", "newmtl a\nmap_Kd none.png\n");
+  for (const char* materials : {"own.mtl", "none.mtl", "../../etc/passwd", "pipe.mtl"}) {
+    folder.write("part.obj", "mtllib " + std::string(materials) + "\n" + obj);
+    EXPECT_EQ(mesh_error(folder, "part.obj"), "") << materials;
   }
 }
 
