@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -19,6 +20,7 @@
 #include "../text/files.h"
 #include "../text/text.h"
 #include "../text/untrusted_input.h"
+#include "limits.h"
 #include "mesh_file_system.h"
 
 namespace mrhi {
@@ -77,7 +79,7 @@ std::string lower_extension(const std::string& file) {
 }
 
 constexpr std::size_t kMaxTriangles = 500'000;
-constexpr ChildLimits kLimits{20, std::size_t(1) << 30, std::size_t(64) << 20};
+constexpr ChildLimits kLimits{20, std::size_t(1) << 30, std::size_t(256) << 20};
 
 /// Refuses a file of another format, one that is too large, and the pointer that git stores in place of a
 /// large file that it has not fetched.
@@ -126,6 +128,20 @@ void take(const std::string& bytes, std::size_t& at, std::vector<std::string>& t
   at += sizeof count;
   texts.resize(count);
   for (std::string& text : texts) take(bytes, at, text);
+}
+
+void check_extent(const Vector3& extent, double part, const char* where) {
+  if (body_limits::kSize.contains(part)) return;
+  throw std::runtime_error("measures " + text::vector(extent) +
+                           " m; allowed: " + body_limits::kSize.describe() + " m " + where +
+                           (part > 1.0 ? "; scale=\"0.001 0.001 0.001\" makes metres of millimetres" : ""));
+}
+
+/// Checks all sizes of a collision mesh, like a box's. A visual mesh may be flat.
+void check_sizes(const TriangleMesh& mesh, bool solid) {
+  const Vector3 extent = box_around(mesh).sizes();
+  check_extent(extent, extent.maxCoeff(), "along the longest axis");
+  if (solid) check_extent(extent, extent.minCoeff(), "along each axis");
 }
 
 /// An STL in the form that assimp reads. Binary: without bytes behind the triangles, which take 50 bytes each
@@ -229,45 +245,122 @@ LoadedMesh read_by_assimp(const MeshFile& source, Assimp::Importer& importer) {
   return {collector.take(), "", {files->opened().begin(), files->opened().end()}};
 }
 
-LoadedMesh read(const MeshFile& source, Assimp::Importer& importer) {
-  LoadedMesh loaded;
+/// Returns what `work` does; its problem in place of an exception.
+template <class Work>
+LoadedMesh without_exceptions(const Work& work) {
+  LoadedMesh refused;
   try {
-    check_file(source.file);
-    loaded = read_by_assimp(source, importer);
-    const std::size_t count = loaded.mesh.triangles.size();
-    if (count == 0) throw std::runtime_error("has no triangles; allowed: at least one");
-    if (count > kMaxTriangles)
-      throw std::runtime_error("has " + std::to_string(count) + " triangles; allowed: at most " +
-                               std::to_string(kMaxTriangles));
+    return work();
   } catch (const std::bad_alloc&) {
-    loaded = {{}, "takes more memory than is allowed", {}};
+    refused.problem = "takes more memory than is allowed";
+  } catch (const NoVolume& error) {
+    refused.problem = error.what(), refused.is_flat = true;
   } catch (const std::exception& error) {
-    loaded = {{}, error.what(), {}};
+    refused.problem = error.what();
   }
+  return refused;
+}
+
+LoadedMesh read_surface(const MeshFile& source, Assimp::Importer& importer) {
+  check_file(source.file);
+  LoadedMesh loaded = read_by_assimp(source, importer);
+  const std::size_t count = loaded.mesh.triangles.size();
+  if (count == 0) throw std::runtime_error("has no triangles; allowed: at least one");
+  if (count > kMaxTriangles)
+    throw std::runtime_error("has " + std::to_string(count) + " triangles; allowed: at most " +
+                             std::to_string(kMaxTriangles));
+  check_sizes(loaded.mesh, false);
   return loaded;
 }
 
-std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files) {
-  const std::string bytes = run_in_child(kLimits, [&] {
-    std::string all;
-    Assimp::Importer importer;  // one for all files: creating it takes longer than reading a small one
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-    for (const MeshFile& file : files) {
-      const LoadedMesh loaded = read(file, importer);
-      append(loaded.problem, all);
-      append(loaded.files, all);
-      append(loaded.mesh.vertices, all);
-      append(loaded.mesh.triangles, all);
-    }
-    return all;
-  });
-  std::vector<LoadedMesh> meshes(files.size());
+LoadedMesh used_as(MeshUse use, LoadedMesh loaded) {
+  if (use == MeshUse::surface || !loaded.problem.empty()) return loaded;
+  if (use == MeshUse::hull) loaded.mesh = convex_hull(loaded.mesh);
+  loaded.assumed = make_solid(loaded.mesh);
+  check_sizes(loaded.mesh, true);
+  return loaded;
+}
+
+/// Reads files in the child process, each once for all its uses. Refuses those beyond the budget.
+class Reader {
+ public:
+  explicit Reader(std::size_t max_triangles) : max_triangles_(max_triangles) {
+    importer_.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  }
+
+  const LoadedMesh& surface_of(const MeshFile& file) {
+    const auto [found, is_new] = surfaces_.emplace(file.file + text::exact(file.scale), LoadedMesh{});
+    if (!is_new) return found->second;
+    found->second = without_exceptions([&] {
+      LoadedMesh loaded = triangles_ > max_triangles_ ? LoadedMesh{} : read_surface(file, importer_);
+      triangles_ += loaded.mesh.triangles.size();
+      if (triangles_ <= max_triangles_) return loaded;
+      throw std::runtime_error("is one too many: the scene's meshes have over " +
+                               std::to_string(max_triangles_) + " triangles; allowed: at most that in all");
+    });
+    return found->second;
+  }
+
+  std::size_t triangles() const { return triangles_; }
+
+ private:
+  const std::size_t max_triangles_;
+  std::size_t triangles_ = 0;
+  Assimp::Importer importer_;  // one for all files: creating it takes longer than reading a small one
+  std::map<std::string, LoadedMesh> surfaces_;
+};
+
+/// The triangles that the files have in all, and the meshes.
+std::string read_all(const std::vector<MeshFile>& files, const MeshBudget& budget) {
+  Reader reader(budget.triangles);
+  for (const MeshFile& file : files) reader.surface_of(file);  // a sum that is too large is found at once
+  std::string all;
+  append(std::to_string(reader.triangles()), all);
+  for (const MeshFile& file : files) {
+    const LoadedMesh loaded = without_exceptions([&] { return used_as(file.use, reader.surface_of(file)); });
+    append(loaded.problem, all);
+    append(loaded.files, all);
+    append(loaded.assumed, all);
+    append(std::string(loaded.is_flat ? 1 : 0, 'f'), all);
+    append(loaded.mesh.vertices, all);
+    append(loaded.mesh.triangles, all);
+    append(loaded.mesh.parts, all);
+  }
+  return all;
+}
+
+std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files, MeshBudget& budget,
+                                      const std::function<bool()>& is_cancelled) {
+  using Clock = std::chrono::steady_clock;
+  ChildLimits limits = kLimits;
+  limits.seconds = std::min(limits.seconds, budget.seconds);
+  if (limits.seconds <= 0.0)
+    throw std::runtime_error("is one too many: the scene's meshes take more time than is allowed in all");
+  const auto begin = Clock::now();
+  const auto spend = [&] { budget.seconds -= std::chrono::duration<double>(Clock::now() - begin).count(); };
+  std::string bytes;
+  try {
+    bytes = run_in_child(
+        limits, [&] { return read_all(files, budget); }, is_cancelled);
+  } catch (const std::runtime_error&) {
+    spend();
+    throw;
+  }
+  spend();
   std::size_t at = 0;
+  std::string triangles, flat;
+  take(bytes, at, triangles);
+  budget.triangles -= std::min<std::size_t>(budget.triangles, std::strtoull(triangles.c_str(), nullptr, 10));
+  std::vector<LoadedMesh> meshes(files.size());
   for (LoadedMesh& mesh : meshes) {
     take(bytes, at, mesh.problem);
     take(bytes, at, mesh.files);
+    take(bytes, at, mesh.assumed);
+    take(bytes, at, flat);
+    mesh.is_flat = !flat.empty();
     take(bytes, at, mesh.mesh.vertices);
     take(bytes, at, mesh.mesh.triangles);
+    take(bytes, at, mesh.mesh.parts);
   }
   return meshes;
 }
@@ -275,16 +368,18 @@ std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files) {
 }  // namespace
 
 /// If the files exceed the limits together, each is read in a process of its own, to find the one at fault.
-std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files) {
+std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files, MeshBudget& budget,
+                                    const std::function<bool()>& is_cancelled) {
   if (files.empty()) return {};
   try {
-    return read_in_child(files);
+    return read_in_child(files, budget, is_cancelled);
   } catch (const std::runtime_error& error) {
+    if (is_cancelled && is_cancelled()) throw;
     if (files.size() == 1) return {{{}, error.what(), {}}};
   }
   std::vector<LoadedMesh> meshes;
   meshes.reserve(files.size());
-  for (const MeshFile& file : files) meshes.push_back(load_meshes({file}).front());
+  for (const MeshFile& file : files) meshes.push_back(load_meshes({file}, budget, is_cancelled).front());
   return meshes;
 }
 

@@ -272,10 +272,7 @@ void read_bodies(const std::string& source, const std::string& folder, UrdfDocum
                  const std::vector<LinkedBody>& bodies, const SceneOptions& options, Scene& scene) {
   ShapeReader shapes(source, folder, options, document.warnings);
   BodyReader reader(source, options, shapes, document);
-  std::vector<urdf::LinkConstSharedPtr> links;
-  for (const LinkedBody& body : bodies)
-    for (const LinkPart& part : body.parts) links.push_back(part.link);
-  shapes.prepare(links);
+  shapes.prepare(bodies);
   for (const LinkedBody& body : bodies)
     if (!body.fixed || body.has_shape()) scene.bodies.push_back(reader.read(body));
   scene.mesh_files = shapes.files();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -9,22 +10,36 @@
 
 namespace mrhi {
 
+/// What is made of a file: its surface as it is, a solid by make_solid(), or that of the convex hull.
+enum class MeshUse { surface, solid, hull };
+
 struct MeshFile {
   std::string file;
   Vector3 scale;
+  MeshUse use = MeshUse::surface;
+};
+
+/// The limits of a scene's meshes together; load_meshes() subtracts what it uses.
+struct MeshBudget {
+  std::size_t triangles = 1'000'000;
+  double seconds = 40.0;  ///< of real time; 20 s for each child process
 };
 
 /// All triangles of a file, with coincident vertices joined; or the reason why it cannot be used.
 struct LoadedMesh {
   TriangleMesh mesh;
-  std::string problem;             ///< continues a message after the file's name; empty: none
-  std::vector<std::string> files;  ///< other files that it was read from, relative to its folder
+  std::string problem;                 ///< continues a message after the file's name; empty: none
+  std::vector<std::string> files;      ///< other files that it was read from, relative to its folder
+  std::vector<std::string> assumed{};  ///< by make_solid()
+  bool is_flat = false;                ///< the problem is that of NoVolume
 };
 
 /// Reads the formats that assimp reads: STL, OBJ, DAE, PLY, glTF. Applies a DAE's unit, but not its up axis
 /// (as in rviz). Files that a mesh names are read in or below its folder only. A child process reads all
-/// files, with limits on sizes, time, memory and triangles.
-std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files);
+/// files and makes the solids, with limits on sizes, time, memory and triangles. Throws std::runtime_error
+/// once `is_cancelled`.
+std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files, MeshBudget& budget,
+                                    const std::function<bool()>& is_cancelled = {});
 
 /// Error of a mesh that is flat or empty. what() continues a message after the mesh's name.
 class NoVolume : public std::runtime_error {

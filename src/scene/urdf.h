@@ -112,8 +112,8 @@ class ShapeReader {
   ShapeReader(std::string source, std::string folder, const SceneOptions& options, Warnings& warnings)
       : source_(std::move(source)), folder_(std::move(folder)), options_(options), warnings_(warnings) {}
 
-  /// Reads the mesh files of all these links together, which is faster than one by one.
-  void prepare(const std::vector<urdf::LinkConstSharedPtr>& links);
+  /// Reads the mesh files of all these bodies together, which is faster than one by one.
+  void prepare(const std::vector<LinkedBody>& bodies);
 
   /// `element` names the place in messages. With `solid`, the mesh is closed or becomes its hull. Returns
   /// nothing for a flat sheet. Throws SceneError.
@@ -128,8 +128,8 @@ class ShapeReader {
   std::string find_file(const std::string& uri) const;
   std::string find_path(const std::string& uri) const;
   std::optional<Shape> read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid);
-  std::shared_ptr<const TriangleMesh> solid_of(const Named& mesh, const std::string& element);
-  const TriangleMesh& triangles_of(const Named& mesh);
+  std::vector<LoadedMesh> load(const std::vector<MeshFile>& files);
+  std::shared_ptr<const TriangleMesh> triangles_of(const Named& mesh, bool solid, const std::string& element);
   std::optional<Shape> make(const std::string& kind, const std::vector<double>& size,
                             const std::string& element);
   [[noreturn]] void fail(const std::string& element, const std::string& what) const;
@@ -137,7 +137,8 @@ class ShapeReader {
   const std::string source_, folder_;
   const SceneOptions& options_;
   Warnings& warnings_;
-  std::map<std::string, LoadedMesh> loaded_;                           // by file and scale
+  MeshBudget budget_;
+  std::map<std::string, LoadedMesh> loaded_;                           // by file, scale and use
   std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;  // the same, as shapes use them
   std::vector<SceneFile> files_;
 };

@@ -2,11 +2,14 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <cmath>
 #include <csignal>
 #include <exception>
 #include <fstream>
@@ -157,9 +160,10 @@ void write_all(int to, const std::string& text) {
 [[noreturn]] void be_child(int to, rlim_t memory, const ChildLimits& limits,
                            const std::function<std::string()>& work) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT}) std::signal(signal, SIG_DFL);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   be_silent();
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, static_cast<rlim_t>(limits.seconds));
+  limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)));
   if (kMemoryIsLimited) limit(RLIMIT_AS, memory);
   try {
     write_all(to, kDone + work());
@@ -171,22 +175,26 @@ void write_all(int to, const std::string& text) {
   _exit(0);
 }
 
-/// Reads until the other end is closed, or until a limit is exceeded.
-std::string read_all(int from, const ChildLimits& limits) {
-  constexpr int kMilliseconds = 1000, kPatience = 4;
+/// Reads until the other end is closed; empty if a limit is exceeded, or once it is cancelled.
+std::string read_all(int from, const ChildLimits& limits, const std::function<bool()>& is_cancelled) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kPeriod = 100;  // between two questions whether it is cancelled [ms]
+  const auto begin = Clock::now();
   std::string text;
   char part[1 << 16];
   while (text.size() <= limits.output) {
+    const std::chrono::duration<double> time = Clock::now() - begin;
+    if (time.count() > limits.seconds || (is_cancelled && is_cancelled())) return "";
     pollfd ready{from, POLLIN, 0};
-    const int count = poll(&ready, 1, kPatience * kMilliseconds * limits.seconds);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return "";
+    const int count = poll(&ready, 1, kPeriod);
+    if (count == 0 || (count < 0 && errno == EINTR)) continue;
+    if (count < 0) return "";
     const ssize_t got = read(from, part, sizeof part);
-    if (got == 0) break;
+    if (got == 0) return text;
     if (got > 0) text.append(part, static_cast<std::size_t>(got));
     if (got < 0 && errno != EINTR) return "";
   }
-  return text.size() <= limits.output ? text : "";
+  return "";
 }
 
 }  // namespace
@@ -222,7 +230,8 @@ std::optional<std::string> xml_danger(const std::string& xml) {
   return {};
 }
 
-std::string run_in_child(const ChildLimits& limits, const std::function<std::string()>& work) {
+std::string run_in_child(const ChildLimits& limits, const std::function<std::string()>& work,
+                         const std::function<bool()>& is_cancelled) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("cannot be read: no pipe to be had");
   const rlim_t memory = size_of_this() + limits.memory;
@@ -232,13 +241,14 @@ std::string run_in_child(const ChildLimits& limits, const std::function<std::str
     be_child(ends[1], memory, limits, work);
   }
   close(ends[1]);
-  const std::string answer = child < 0 ? "" : read_all(ends[0], limits);
+  const std::string answer = child < 0 ? "" : read_all(ends[0], limits, is_cancelled);
   close(ends[0]);
   if (child > 0) {
     kill(child, SIGKILL);  // finished, or to be ended
     while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
+  if (answer.empty() && is_cancelled && is_cancelled()) throw std::runtime_error("is cancelled");
   if (answer.empty())
     throw std::runtime_error("takes more time or memory than is allowed, or cannot be read");
   if (answer[0] == kDone) return answer.substr(1);

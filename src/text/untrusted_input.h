@@ -16,12 +16,14 @@ std::optional<std::string> xml_danger(const std::string& xml);
 
 /// Resource limits of a child process.
 struct ChildLimits {
-  int seconds;                 ///< of processor time; four times as many of real time
+  double seconds;              ///< of real time
   std::size_t memory, output;  ///< beyond this process's memory; of the result [bytes]
 };
 
 /// Runs `work` in a child process and returns its result. Throws std::runtime_error with the text of its
 /// exception, or with the exceeded limit or the cause of its end. This process is not affected.
-std::string run_in_child(const ChildLimits& limits, const std::function<std::string()>& work);
+/// `is_cancelled` is asked ten times a second; once it is true, the child is ended.
+std::string run_in_child(const ChildLimits& limits, const std::function<std::string()>& work,
+                         const std::function<bool()>& is_cancelled = {});
 
 }  // namespace mrhi

@@ -2,13 +2,17 @@
 
 #include <sys/stat.h>
 
+#include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <regex>
+#include <sstream>
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/training/task.h"
 #include "scene/scene_files.h"
+#include "scene/solid_mesh.h"
 
 namespace mrhi {
 namespace {
@@ -143,6 +147,43 @@ TEST(HostileMesh, that_is_a_symlink_reads_the_files_beside_its_target) {
   for (const char* file : {"part.gltf", "part.bin"})
     std::filesystem::create_symlink(std::string("../source/") + file, folder.path() + "/installed/" + file);
   EXPECT_EQ(mesh_error(folder, "installed/part.gltf"), "");
+}
+
+// An open fan of 20 000 points keeps the search for its hull busy for minutes.
+TEST(HostileMesh, that_takes_long_ends_once_it_is_cancelled) {
+  const test::Folder folder;
+  std::ostringstream obj;
+  constexpr int kPoints = 20'000;
+  obj << "v 0 0 0\nv 0 0 .05\n";
+  for (int i = 0; i < kPoints; ++i) {
+    const double turn = 6.28 * i / kPoints;
+    obj << "v " << 0.05 * std::cos(turn) << " " << 0.05 * std::sin(turn) << " .02\n";
+  }
+  for (int i = 0; i < kPoints; ++i) obj << "f 1 2 " << i + 3 << "\n";
+  folder.write("fan.obj", obj.str());
+  int asked = 0;
+  SceneOptions options;
+  options.is_cancelled = [&] { return ++asked > 5; };
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string urdf = folder.write(
+      "s.urdf", test::thing(std::string(test::kInertial) +
+                            "<collision><geometry><mesh filename=\"fan.obj\"/></geometry></collision>"));
+  test::expect_words(test::scene_error(urdf, options), {"is cancelled"});
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+}
+
+TEST(HostileMesh, has_its_triangles_counted_with_the_other_meshes_of_the_scene) {
+  const test::Folder folder;
+  const std::string obj = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const MeshFile a{folder.write("a.obj", obj), Vector3::Ones()}, larger{a.file, Vector3(2, 1, 1)},
+      b{folder.write("b.obj", obj), Vector3::Ones()}, solid{a.file, a.scale, MeshUse::solid};
+  MeshBudget budget{11, 20.0};
+  const std::vector<LoadedMesh> meshes = load_meshes({a, solid, b, larger}, budget);
+  for (const int i : {0, 1, 2}) EXPECT_EQ(meshes[i].problem, "") << i;
+  test::expect_words(meshes[3].problem, {"over 11 triangles"});
+  test::expect_words(load_meshes({a}, budget)[0].problem, {"over 0 triangles"});
+  MeshBudget no_time{11, 0.0};
+  test::expect_words(load_meshes({a, b}, no_time)[1].problem, {"more time than is allowed in all"});
 }
 
 // Colours are not used.
