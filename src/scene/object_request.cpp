@@ -1,11 +1,13 @@
 #include "mr_hand_interaction/scene/object_request.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "../text/files.h"
 #include "../text/text.h"
 #include "../text/untrusted_input.h"
+#include "limits.h"
 #include "shape_kinds.h"
 #include "urdf.h"
 
@@ -28,6 +30,10 @@ LinkedBody placed_shape(const ObjectRequest& request) {
                      " numbers; allowed: " + std::to_string(kind.sizes.size()) + " (" +
                      text::joined(kind.sizes) + ") [m]");
   }
+  const Range& range = body_limits::kSize;
+  if (!std::all_of(request.size.begin(), request.size.end(), [&](double s) { return range.contains(s); }))
+    throw SceneError(kSource + ": " + kind.describe(request.size) +
+                     " m is not allowed; allowed: " + range.describe() + " m");
   auto link = std::make_shared<urdf::Link>();
   auto collision = std::make_shared<urdf::Collision>();
   auto geometry = std::make_shared<urdf::Mesh>();

@@ -100,17 +100,18 @@ class BodyReader {
   /// Reads the collision shapes into the first link's frame, also by part, for the parts' inertias.
   void read_collisions(const std::vector<LinkPart>& parts, Body& body) {
     of_parts_.assign(parts.size(), {});
-    flat_ = false;
+    left_out_ = false;
     add_shapes(parts, &urdf::Link::collision_array, "collision ", body);
     if (body.fixed || !body.shapes.empty()) return;
     add_shapes(parts, &urdf::Link::visual_array, "visual ", body);
     if (!body.shapes.empty())
       return document_.warnings.add("links without a collision touch with their visuals",
                                     "'" + body.name + "'");
-    if (!moves(*parts[0].link->parent_joint))  // else a link of a mechanism, which needs no shape
-      fail(*parts[0].link, "a body that moves has no collision with a volume" +
-                               std::string(flat_ ? ", its meshes are flat sheets" : "") +
-                               "; allowed: 1 to 255 shapes");
+    if (!moves(*parts[0].link))  // else a link of a mechanism, which needs no shape
+      fail(*parts[0].link,
+           "a body that moves has no collision with a volume" +
+               std::string(left_out_ ? ", as flat sheets and very small shapes are left out" : "") +
+               "; allowed: 1 to 255 shapes");
   }
 
   template <class Elements>
@@ -121,7 +122,7 @@ class BodyReader {
       for (const auto& element : *parts[i].link.*elements) {
         const std::string where = "link '" + parts[i].link->name + "' " + kind + std::to_string(++number);
         const auto shape = shapes_.read(*element->geometry, where, true);
-        flat_ = flat_ || !shape;
+        left_out_ = left_out_ || !shape;
         if (shape) of_parts_[i].push_back({*shape, parts[i].pose * to_pose(element->origin)});
       }
       body.shapes.insert(body.shapes.end(), of_parts_[i].begin(), of_parts_[i].end());
@@ -264,7 +265,7 @@ class BodyReader {
   const SceneOptions& options_;
   ShapeReader& shapes_;
   UrdfDocument& document_;
-  bool flat_ = false;                               // a shape of the current body is a flat sheet
+  bool left_out_ = false;                           // a shape of the current body has no volume
   std::vector<std::vector<PlacedShape>> of_parts_;  // of the current body, in its first link's frame
 };
 
@@ -334,9 +335,9 @@ LinkedBody only_body(const std::string& source, UrdfDocument& document) {
   if (found.size() != 1)
     throw SceneError(source + ": this URDF has " + (found.empty() ? "no link" : "several links") +
                      " with a shape; allowed: one");
-  const urdf::Joint& joint = *found.front().link().parent_joint;
-  if (moves(joint))
-    throw SceneError(source + ": joint " + text::quoted(joint.name) +
+  const urdf::Link& link = found.front().link();
+  if (moves(link))
+    throw SceneError(source + ": joint " + text::quoted(link.parent_joint->name) +
                      " turns or slides; allowed: floating, fixed");
   return found.front();
 }

@@ -92,8 +92,8 @@ urdf::ModelInterfaceSharedPtr parsed(const std::string& xml) {
 }
 
 void check_joints(const std::string& file, const urdf::ModelInterface& model) {
-  for (const auto& [name, joint] : model.joints_)  // urdfdom refuses all types that are not listed here
-    if (joint->type != urdf::Joint::FIXED && joint->type != urdf::Joint::FLOATING && !moves(*joint))
+  for (const auto& [name, joint] : model.joints_)
+    if (joint->type == urdf::Joint::PLANAR)
       throw SceneError(file + ": joint " + text::quoted(name) +
                        " is planar; allowed: floating (a free body), fixed (a fixture, or a part of the body "
                        "that it is on), revolute, continuous, prismatic");
@@ -188,9 +188,10 @@ bool LinkedBody::has_shape() const {
   });
 }
 
-bool moves(const urdf::Joint& joint) {
-  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
-         joint.type == urdf::Joint::PRISMATIC;
+bool moves(const urdf::Link& link) {
+  if (!link.parent_joint) return false;
+  const int type = link.parent_joint->type;
+  return type == urdf::Joint::REVOLUTE || type == urdf::Joint::CONTINUOUS || type == urdf::Joint::PRISMATIC;
 }
 
 Pose to_pose(const urdf::Pose& pose) {
@@ -218,7 +219,7 @@ std::vector<LinkedBody> linked_bodies(const std::string& urdf_file, UrdfDocument
       bodies[body_of.at(held.link)].parts.push_back({link, held.pose});
   }
   for (LinkedBody& body : bodies) {
-    if (body.fixed || moves(*body.link().parent_joint) || !is_weightless(body)) continue;
+    if (body.fixed || moves(body.link()) || !is_weightless(body)) continue;
     body.fixed = true;
     document.warnings.add("links of mass 0 are fixtures; a mass, or no <inertial>, makes them move",
                           "'" + body.link().name + "'");
@@ -230,8 +231,7 @@ std::vector<Joint> read_joints(const std::string& urdf_file, const UrdfDocument&
                                const Scene& scene) {
   std::vector<Joint> joints;
   for (const urdf::LinkConstSharedPtr& link : document.links) {
-    if (link->parent_joint && moves(*link->parent_joint))
-      joints.push_back(read_joint(urdf_file, document, scene, *link->parent_joint));
+    if (moves(*link)) joints.push_back(read_joint(urdf_file, document, scene, *link->parent_joint));
   }
   return joints;
 }

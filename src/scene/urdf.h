@@ -76,8 +76,8 @@ Pose to_pose(const urdf::Pose& pose);
 /// Throws SceneError that begins with `element` for a component of a colour outside 0 to 1.
 void check_color(const std::string& element, const std::array<float, 4>& rgba);
 
-/// True if the joint is revolute, continuous or prismatic.
-bool moves(const urdf::Joint& joint);
+/// True if the link is on a joint that is revolute, continuous or prismatic. A requested link has no joint.
+bool moves(const urdf::Link& link);
 
 /// A link that is a part of a body, and its pose in the frame of the body's first link.
 struct LinkPart {
