@@ -99,14 +99,34 @@ void check_joints(const std::string& file, const urdf::ModelInterface& model) {
                        "that it is on), revolute, continuous, prismatic");
 }
 
-/// The first link from this one upwards for which `stops` is true, or the root, and the pose relative to it.
-template <class Stops>
-LinkPart climbed(const urdf::ModelInterface& model, LinkPart at, const Stops& stops) {
-  while (at.link != model.getRoot() && !stops(*at.link)) {
-    const urdf::Joint& joint = *at.link->parent_joint;
-    at = {model.getLink(joint.parent_link_name), to_pose(joint.parent_to_joint_origin_transform) * at.pose};
+/// A link's place in the tree with all joints at 0.
+struct LinkPlace {
+  urdf::LinkConstSharedPtr first;  ///< of the links that fixed joints connect to it, or the root
+  Pose in_first, in_world;
+};
+using LinkPlaces = std::map<urdf::LinkConstSharedPtr, LinkPlace>;
+
+bool is_fixed(const urdf::Link& link) {
+  return link.parent_joint->type == urdf::Joint::FIXED;
+}
+
+/// The places of all links, in one pass from the root.
+LinkPlaces places_in(const urdf::ModelInterface& model) {
+  LinkPlaces places{{model.getRoot(), {model.getRoot(), Pose{}, Pose{}}}};
+  std::vector<urdf::LinkConstSharedPtr> open{model.getRoot()};
+  while (!open.empty()) {
+    const LinkPlace above = places.at(open.back());
+    const std::vector<urdf::LinkSharedPtr> children = open.back()->child_links;
+    open.pop_back();
+    for (const urdf::LinkSharedPtr& link : children) {
+      const Pose origin = to_pose(link->parent_joint->parent_to_joint_origin_transform);
+      const Pose in_world = above.in_world * origin;
+      places[link] = is_fixed(*link) ? LinkPlace{above.first, above.in_first * origin, in_world}
+                                     : LinkPlace{link, Pose{}, in_world};
+      open.push_back(link);
+    }
   }
-  return at;
+  return places;
 }
 
 /// True if all given masses are 0: other simulators mark fixtures so.
@@ -128,20 +148,24 @@ void read_limits(const urdf::Joint& given, Joint& joint) {
   joint.start = std::min(std::max(0.0, joint.lower), joint.upper);
 }
 
+/// Indices of bodies by the names of their first links.
+using BodyIndices = std::map<std::string, int>;
+
 /// Sets the parent: the nearest body above. Links without geometry on fixed joints are no bodies.
-void set_parent(const UrdfDocument& document, const Scene& scene, const urdf::Joint& given, Joint& joint) {
+void set_parent(const UrdfDocument& document, const Scene& scene, const BodyIndices& bodies,
+                const urdf::Joint& given, Joint& joint) {
   const urdf::ModelInterface& model = *document.model;
-  const LinkPart above =
-      climbed(model, {model.getLink(given.parent_link_name), to_pose(given.parent_to_joint_origin_transform)},
-              [&](const urdf::Link& link) { return find_body(scene, link.name).has_value(); });
-  joint.in_parent = above.pose;
-  if (above.link == model.getRoot()) return;
-  joint.parent = *find_body(scene, above.link->name);
+  urdf::LinkConstSharedPtr link = model.getLink(given.parent_link_name);
+  joint.in_parent = to_pose(given.parent_to_joint_origin_transform);
+  for (; link != model.getRoot() && bodies.count(link->name) == 0; link = link->getParent())
+    joint.in_parent = to_pose(link->parent_joint->parent_to_joint_origin_transform) * joint.in_parent;
+  if (link == model.getRoot()) return;
+  joint.parent = bodies.at(link->name);
   joint.in_parent = scene.bodies[joint.parent].link_in_body * joint.in_parent;
 }
 
 Joint read_joint(const std::string& file, const UrdfDocument& document, const Scene& scene,
-                 const urdf::Joint& given) {
+                 const BodyIndices& bodies, const urdf::Joint& given) {
   const std::string what = file + ": joint " + text::quoted(given.name) + ": ";
   if (!is_name(given.name)) throw SceneError(what + "this name is not allowed; allowed: " + kNameIs);
   Joint joint;
@@ -153,10 +177,10 @@ Joint read_joint(const std::string& file, const UrdfDocument& document, const Sc
     throw SceneError(what + "axis " + text::vector(axis) + "; allowed: a direction, its length " +
                      length.describe());
   joint.axis = axis.normalized();
-  joint.child = *find_body(scene, given.child_link_name);
+  joint.child = bodies.at(given.child_link_name);
   joint.in_child = scene.bodies[joint.child].link_in_body;
   read_limits(given, joint);
-  set_parent(document, scene, given, joint);
+  set_parent(document, scene, bodies, given, joint);
   if (given.dynamics) {
     joint.damping = given.dynamics->damping;
     joint.friction = given.dynamics->friction;
@@ -203,20 +227,20 @@ std::vector<LinkedBody> linked_bodies(const std::string& urdf_file, UrdfDocument
   const urdf::ModelInterface& model = *document.model;
   check_joints(urdf_file, model);
   const urdf::LinkConstSharedPtr root = model.getRoot();
-  const auto is_free = [](const urdf::Link& link) { return link.parent_joint->type != urdf::Joint::FIXED; };
+  const LinkPlaces places = places_in(model);
   std::vector<LinkedBody> bodies;
   std::map<urdf::LinkConstSharedPtr, std::size_t> body_of;
   for (const urdf::LinkConstSharedPtr& link : document.links) {
-    const bool fixture = climbed(model, {link, Pose{}}, is_free).link == root;
-    if (link == root || (!is_free(*link) && !fixture)) continue;
+    const LinkPlace& place = places.at(link);
+    const bool fixture = place.first == root;
+    if (link == root || (!fixture && place.first != link)) continue;
     body_of[link] = bodies.size();
-    const auto never = [](const urdf::Link&) { return false; };
-    bodies.push_back({{{link, Pose{}}}, fixture, climbed(model, {link, Pose{}}, never).pose});
+    bodies.push_back({{{link, Pose{}}}, fixture, place.in_world});
   }
   for (const urdf::LinkConstSharedPtr& link : document.links) {
-    const LinkPart held = climbed(model, {link, Pose{}}, is_free);
-    if (held.link != root && held.link != link)
-      bodies[body_of.at(held.link)].parts.push_back({link, held.pose});
+    const LinkPlace& place = places.at(link);
+    if (place.first != root && place.first != link)
+      bodies[body_of.at(place.first)].parts.push_back({link, place.in_first});
   }
   for (LinkedBody& body : bodies) {
     if (body.fixed || moves(body.link()) || !is_weightless(body)) continue;
@@ -229,9 +253,11 @@ std::vector<LinkedBody> linked_bodies(const std::string& urdf_file, UrdfDocument
 
 std::vector<Joint> read_joints(const std::string& urdf_file, const UrdfDocument& document,
                                const Scene& scene) {
+  BodyIndices bodies;
+  for (const Body& body : scene.bodies) bodies.emplace(body.name, static_cast<int>(bodies.size()));
   std::vector<Joint> joints;
   for (const urdf::LinkConstSharedPtr& link : document.links) {
-    if (moves(*link)) joints.push_back(read_joint(urdf_file, document, scene, *link->parent_joint));
+    if (moves(*link)) joints.push_back(read_joint(urdf_file, document, scene, bodies, *link->parent_joint));
   }
   return joints;
 }

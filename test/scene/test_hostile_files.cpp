@@ -338,6 +338,29 @@ std::string mesh_error(const std::string& name, const std::string& text) {
                             "\"/></geometry></collision>")));
 }
 
+// Chains of 9000 links took 40 s.
+TEST(HostileUrdf, of_a_long_chain_of_links_is_read_in_linear_time) {
+  const test::Folder folder;
+  const auto seconds = [&](int links, const std::string& first) {
+    std::string content = test::joint(first, "world", "l0", "xyz=\"0.5 0 0\"");
+    for (int i = 0; i < links; ++i) {
+      const std::string name = "l" + std::to_string(i);
+      content += test::link(name, i == links - 1 ? test::kInertial + std::string(test::kBox) : "");
+      if (i > 0) content += test::joint("fixed", "l" + std::to_string(i - 1), name, "xyz=\"0 0 1e-5\"");
+    }
+    const std::string file = folder.write("s.urdf", test::robot(content));
+    const auto begin = std::chrono::steady_clock::now();
+    const Scene scene = load_scene(file, {});
+    EXPECT_EQ(scene.bodies.size(), 1u);
+    EXPECT_NEAR((scene.bodies[0].start.position - Vector3(0.5, 0.0, 1e-5 * (links - 1))).norm(), 0.0, 1e-9);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  for (const char* first : {"fixed", "floating"}) {
+    const double few = seconds(800, first);
+    EXPECT_LT(seconds(8000, first), 30 * few + 0.2) << first;
+  }
+}
+
 // Thirty nodes, each of which has the next twice: 2^30 nodes, more than any machine's memory.
 TEST(HostileMesh, that_stands_for_an_endless_scene_is_given_up_within_its_limits) {
   std::string nodes;
