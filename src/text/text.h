@@ -57,7 +57,8 @@ std::vector<std::string> words(const std::string& text);
 /// Splits at commas.
 std::vector<std::string> split(const std::string& text);
 
-/// Replaces line breaks by spaces and other control characters by '?'; truncates to `longest` characters.
+/// Replaces line breaks by spaces, and other control characters and bytes that are no UTF-8 by '?';
+/// truncates to `longest` bytes.
 std::string one_line(const std::string& text, std::size_t longest = 300);
 
 /// The same in quotes, for a name in a message.

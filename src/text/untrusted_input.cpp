@@ -23,15 +23,6 @@ constexpr int kDeepest = 32;
 constexpr std::size_t kMaxElements = 100'000;
 constexpr std::size_t kMaxAttributes = 64;  // per element: libraries compare each with all before it
 
-/// Length in bytes of the UTF-8 character that begins with `lead`; 0: invalid.
-std::size_t length_of(unsigned char lead) {
-  if (lead < 0x80) return 1;
-  if (lead < 0xC2) return 0;
-  if (lead < 0xE0) return 2;
-  if (lead < 0xF0) return 3;
-  return lead < 0xF5 ? 4 : 0;
-}
-
 bool has_control_characters(const std::string& xml) {
   return std::any_of(xml.begin(), xml.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
@@ -199,12 +190,20 @@ std::string read_all(int from, const ChildLimits& limits, const std::function<bo
 
 }  // namespace
 
+std::size_t utf8_length(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[at + i]); };
+  const unsigned char lead = byte(0);
+  const std::size_t length = lead < 0x80 ? 1 : lead < 0xC2 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+  if (lead > 0xF4 || at + length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  return length;
+}
+
 bool is_utf8(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = length_of(static_cast<unsigned char>(text[at]));
-    if (length == 0 || at + length > text.size()) return false;
-    for (std::size_t i = 1; i < length; ++i)
-      if ((static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80) return false;
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0) return false;
     at += length;
   }
   return true;

@@ -9,6 +9,8 @@ namespace mrhi {
 constexpr std::size_t kMaxXmlBytes = 4 * 1024 * 1024;
 
 bool is_utf8(const std::string& text);
+/// Length in bytes of the UTF-8 character at a place of a text; 0: none.
+std::size_t utf8_length(const std::string& text, std::size_t at);
 
 /// Returns a construct that would overload an XML library, with what is allowed; empty if there is none.
 /// Libraries recurse as deep as elements are nested, and need quadratic time in an element's attributes.
