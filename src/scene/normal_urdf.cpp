@@ -228,6 +228,9 @@ class Normaliser {
         const XMLElement* geometry = element.FirstChildElement("geometry");
         if (geometry == nullptr || geometry->FirstChildElement() == nullptr)
           return warnings_.add("visuals and collisions without a shape are left out", where + " " + kind);
+        if (geometry->FirstChildElement()->NextSiblingElement() != nullptr ||
+            geometry->NextSiblingElement("geometry") != nullptr)
+          warnings_.add("a visual or collision has one shape: its others are left out", where + " " + kind);
         open(kind.c_str(), {});
         write_origin(element, where + " " + kind);
         write_geometry(*geometry, where + " " + kind);
@@ -250,7 +253,11 @@ class Normaliser {
     open("inertial", {});
     write_origin(*inertial, where);
     const std::string value = value_of(mass);
-    write("mass", {{"value", value.empty() ? "0" : value}});
+    if (value.empty())
+      throw std::runtime_error(where +
+                               ": mass has no value; allowed: a number of kg, or no <mass> for that of "
+                               "the volume");
+    write("mass", {{"value", value}});
     const XMLElement* inertia = inertial->FirstChildElement("inertia");
     Attributes moments;
     for (const char* moment : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"})

@@ -338,6 +338,19 @@ std::string mesh_error(const std::string& name, const std::string& text) {
                             "\"/></geometry></collision>")));
 }
 
+TEST(HostileUrdf, that_says_too_much_or_too_little_is_not_guessed_at_in_silence) {
+  const test::Folder folder;
+  const std::string two =
+      "<collision><geometry><box size=\".1 .1 .1\"/><sphere radius=\"1\"/></geometry></collision>";
+  const Scene scene = load_scene(folder.write("s.urdf", test::thing(test::kInertial + two)), {});
+  EXPECT_EQ(scene.warnings,
+            std::vector<std::string>{
+                "a visual or collision has one shape: its others are left out: link 'thing' collision"});
+  for (const char* mass : {"<mass value=\"\"/>", "<mass/>"})
+    test::expect_words(urdf_error(test::thing("<inertial>" + std::string(mass) + "</inertial>" + test::kBox)),
+                       {"link 'thing' inertial: mass has no value"});
+}
+
 // Chains of 9000 links took 40 s.
 TEST(HostileUrdf, of_a_long_chain_of_links_is_read_in_linear_time) {
   const test::Folder folder;
