@@ -136,7 +136,7 @@ int check(const std::vector<std::string>& words) {
       print(file, scene);
       if (!picture.empty()) write_file(picture, Picture(scene).svg());
     } catch (const std::exception& error) {
-      std::cerr << "check_scene: " << error.what() << std::endl;
+      print_error("check_scene", error);
       status = 1;
     }
   }

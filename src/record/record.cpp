@@ -205,6 +205,13 @@ std::string text_of(const fs::path& file) {
   return file_text(file.string(), kMaxFileBytes).value_or("");
 }
 
+/// A recorded name as a relative path, which leads to no folder above.
+fs::path path_below(const std::string& name) {
+  fs::path path;
+  for (const fs::path& part : fs::path(name).relative_path()) path /= part == ".." ? fs::path("up") : part;
+  return path;
+}
+
 void add_files(const RecordedFiles& files, World& world) {
   for (const RecordedFile& file : files) {
     if (RecordedFile* const known = text::find_named(world.files, file.name)) {
@@ -243,21 +250,25 @@ RecordedFiles contents_of(const std::vector<SceneFile>& files) {
   return contents;
 }
 
+/// Keeps the names of the files below one folder, so that a mesh finds the files that it names. Files of
+/// earlier changes stay: another content goes to another folder.
 std::map<std::string, std::string> written_to(const std::string& folder, const RecordedFiles& files) {
-  std::map<std::string, std::string> paths;
+  fs::path base;
+  const auto path_of = [&](const RecordedFile& file) { return base / path_below(file.name); };
+  const auto is_other = [&](const RecordedFile& file) {
+    return fs::exists(path_of(file)) &&
+           file_text(path_of(file).string(), file.bytes.size() + 1) != file.bytes;
+  };
+  int i = 0;
+  do {
+    base = fs::path(folder) / std::to_string(i++);
+  } while (std::any_of(files.begin(), files.end(), is_other));
   fs::create_directories(folder);
+  std::map<std::string, std::string> paths;
   for (const RecordedFile& file : files) {
-    const auto numbered = [&](int i) {
-      const std::string name = "mesh_" + std::to_string(i) + fs::path(file.name).extension().string();
-      return (fs::path(folder) / name).string();
-    };
-    const auto is_other = [&](const std::string& path) {
-      return fs::exists(path) && file_text(path, file.bytes.size() + 1) != file.bytes;
-    };
-    int i = 0;  // files of changes before this one stay
-    while (is_other(numbered(i))) ++i;
-    write_file(numbered(i), file.bytes);
-    paths[file.name] = numbered(i);
+    fs::create_directories(path_of(file).parent_path());
+    write_file(path_of(file).string(), file.bytes);
+    paths[file.name] = path_of(file).string();
   }
   return paths;
 }

@@ -51,13 +51,13 @@ std::string read_all(const std::string& file) {
 /// cause of an error, and may end the process for a corrupt file. Throws BagError. Returns the file's name.
 const std::string& readable(const std::string& file) {
   constexpr std::size_t kMemory = std::size_t{2} << 30, kOutput = 1 << 16;
-  constexpr std::uintmax_t kSlowest = 10u << 20;  // bytes a second, compressed
+  constexpr std::uintmax_t kSlowest = 5u << 19;  // bytes a second, compressed
   const std::string why = why_unreadable(file);
   if (!why.empty()) throw BagError(file + ": " + why + "; allowed: a bag that may be read");
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   try {
-    const ChildLimits limits{30 + static_cast<int>(error ? 0 : size / kSlowest), kMemory, kOutput};
+    const ChildLimits limits{120.0 + static_cast<double>(error ? 0 : size / kSlowest), kMemory, kOutput};
     run_in_child(limits, [&file] { return read_all(file); });
   } catch (const std::runtime_error& problem) {
     throw BagError(file + ": is corrupt: " + text::one_line(problem.what()) + kWhole);

@@ -11,6 +11,14 @@
 namespace mrhi {
 namespace {
 
+/// A cell without blanks around it, and without the quotes that R's write.csv puts around names and texts.
+std::string plain(std::string cell) {
+  cell.erase(cell.find_last_not_of(" \t") + 1);
+  cell.erase(0, cell.find_first_not_of(" \t"));
+  if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
+  return cell;
+}
+
 /// If cells are separated by semicolons or tabs, as in some locales' spreadsheets, a comma is the decimal
 /// point.
 std::vector<std::string> split(std::string line, char separator) {
@@ -19,7 +27,9 @@ std::vector<std::string> split(std::string line, char separator) {
     std::replace(line.begin(), line.end(), ',', '.');
     std::replace(line.begin(), line.end(), separator, ',');
   }
-  return text::split(line);
+  std::vector<std::string> cells = text::split(line);
+  for (std::string& cell : cells) cell = plain(cell);
+  return cells;
 }
 
 char separator_of(const std::string& header) {
@@ -85,7 +95,12 @@ HandJoints read_hand(const CsvColumns& row, std::uint32_t id) {
 }  // namespace
 
 CsvColumns::CsvColumns(std::string file, const std::string& header)
-    : file_(std::move(file)), separator_(separator_of(header)), names_(split(header, separator_)) {}
+    : file_(std::move(file)), separator_(separator_of(header)), names_(split(header, separator_)) {
+  for (std::size_t i = 0; i < names_.size(); ++i)
+    if (!names_[i].empty() && std::find(names_.begin(), names_.begin() + i, names_[i]) != names_.begin() + i)
+      throw RecordingError(file_ + ":1: column " + text::quoted(names_[i], 40) +
+                           " is given twice; allowed: once");
+}
 
 void CsvColumns::take(const std::string& line, std::size_t line_number) {
   line_number_ = line_number;
@@ -99,7 +114,7 @@ void CsvColumns::take(const std::string& line, std::size_t line_number) {
 std::optional<double> CsvColumns::number(const std::string& column) const {
   for (std::size_t i = 0; i < names_.size(); ++i) {
     if (names_[i] != column) continue;
-    if (cells_[i].empty()) return std::nullopt;
+    if (cells_[i].empty() || cells_[i] == "NA") return std::nullopt;  // R's word for a missing value
     const auto value = text::to_number(cells_[i]);
     if (!value) fail(column, "'" + cells_[i] + "' is not a number");
     return value;
@@ -132,6 +147,8 @@ std::vector<JointsFrame> read_recording_csv(const std::string& file) try {
   FileLines lines(file);
   std::string line;
   if (!lines.next(line)) throw RecordingError(file + ": is empty; allowed: a header and frames");
+  if (line.compare(0, 2, "\x1F\x8B") == 0)
+    throw RecordingError(file + ": is compressed by gzip; allowed: the table that 'gunzip' makes of it");
   CsvColumns row(file, line);
   std::vector<JointsFrame> frames;
   FrameKey key;

@@ -153,6 +153,12 @@ void ReplayRun::correct(const std::string& kind, const std::string& detail) {
 }
 
 void ReplayRun::check_end() {
+  std::vector<std::string> rejected;
+  for (const auto& [reason, count] : summary.rejected)
+    if (count > 1) rejected.push_back(std::to_string(count) + " " + reason);
+  if (!rejected.empty())
+    progress.line("replay: frames rejected in all: " + text::joined(rejected) +
+                  "; used: " + std::to_string(summary.frames));
   if (summary.frames == 0) throw std::runtime_error(summary.input + ": no frame that can be used");
   writer_->flush();
   // Range of a tracker's mean interval [s], and number of frames that are needed to check it.
@@ -202,7 +208,7 @@ void ProgressBar::show(std::size_t position, std::size_t size) {
 
 void ProgressBar::line(const std::string& text) {
   wipe();
-  std::fprintf(stderr, "%s\n", text.c_str());
+  std::fprintf(stderr, "%s\n", text::one_line(text, 4000).c_str());
 }
 
 void ProgressBar::wipe() {

@@ -42,6 +42,7 @@ const ros::WallDuration kIdlePeriod(1.0 / 30);
 SceneOptions options_of(const Configuration& configuration) {
   SceneOptions options = scene_options(configuration);
   options.gravity.reset();
+  options.is_cancelled = [] { return ros::isShuttingDown(); };
   return options;
 }
 

@@ -14,8 +14,7 @@ namespace {
 using namespace joint_ranges;
 
 [[noreturn]] void refuse(const Joint& joint, const std::string& what, const std::string& allowed) {
-  throw std::invalid_argument("joint '" + text::one_line(joint.name, 60) + "': " + what +
-                              "; allowed: " + allowed);
+  throw std::invalid_argument("joint " + text::quoted(joint.name) + ": " + what + "; allowed: " + allowed);
 }
 
 void check(const Joint& joint, const std::string& what, double value, const Range& allowed) {
@@ -77,16 +76,18 @@ void check_bodies(const Scene& scene, const Joint& joint) {
   }
 }
 
-void check_tree(const Scene& scene, const Joint& joint) {
-  if (joint_of(scene, joint.child) != &joint) {
-    refuse(joint, "is a second one of body '" + scene.bodies[joint.child].name + "'",
-           "one joint to each body");
-  }
+void check_only_joint(const Scene& scene, const Joint& joint) {
+  if (joint_of(scene, joint.child) == &joint) return;
+  refuse(joint, "is a second one of body '" + scene.bodies[joint.child].name + "'", "one joint to each body");
+}
+
+/// Number of joints above this one. Refuses a loop.
+std::size_t depth_of(const Scene& scene, const Joint& joint) {
   std::size_t depth = 0;
-  for (const Joint* above = &joint; above != nullptr && above->parent != Joint::kWorld;
-       above = joint_of(scene, above->parent)) {
+  const Joint* above = &joint;
+  while ((above = joint_of(scene, above->parent)) != nullptr)
     if (++depth > scene.joints.size()) refuse(joint, "hangs in a loop of joints", "trees");
-  }
+  return depth;
 }
 
 /// Limits the number of joints that a force on one of them may move: those of a mechanism, which are solved
@@ -98,22 +99,13 @@ void check_mechanism_sizes(const Scene& scene) {
     while (const Joint* above = joint_of(scene, first->parent)) first = above;
     const Body* const parent = first->parent == Joint::kWorld ? nullptr : &scene.bodies[first->parent];
     const bool floats = parent != nullptr && !parent->fixed;
-    const std::string which =
-        floats ? "body '" + parent->name + "'" : "joint '" + text::one_line(first->name, 60) + "'";
+    const std::string which = floats ? "body '" + parent->name + "'" : "joint " + text::quoted(first->name);
     if (++together[which] > kMaxConnectedJoints) {
       throw std::invalid_argument(
           "the mechanism of " + which + " has more than " + std::to_string(kMaxConnectedJoints) +
           " joints; allowed: at most that, and " + std::to_string(kMaxJoints) + " in a scene");
     }
   }
-}
-
-std::size_t depth_of(const Scene& scene, const Joint& joint) {
-  std::size_t depth = 0;
-  for (const Joint* above = joint_of(scene, joint.parent); above != nullptr;
-       above = joint_of(scene, above->parent))
-    ++depth;
-  return depth;
 }
 
 }  // namespace
@@ -148,13 +140,15 @@ void arrange_joints(Scene& scene) {
     check_forces(joint);
     check_detents(joint);
   }
-  for (const Joint& joint : scene.joints) check_tree(scene, joint);
+  for (const Joint& joint : scene.joints) {
+    check_only_joint(scene, joint);
+    depth_of(scene, joint);  // refuses loops
+  }
   check_mechanism_sizes(scene);
-  std::vector<std::pair<std::size_t, Joint>> sorted;
-  for (const Joint& joint : scene.joints) sorted.emplace_back(depth_of(scene, joint), joint);
+  std::vector<Joint> sorted = scene.joints;
   std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t i = 0; i < sorted.size(); ++i) scene.joints[i] = sorted[i].second;
+                   [&](const Joint& a, const Joint& b) { return depth_of(scene, a) < depth_of(scene, b); });
+  scene.joints = std::move(sorted);
   for (const Joint& joint : scene.joints) {
     Body& child = scene.bodies[joint.child];
     Pose parent;

@@ -6,8 +6,7 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cctype>
-#include <clocale>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -17,11 +16,12 @@
 #include <new>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
 
 #include "../text/files.h"
 #include "../text/text.h"
 #include "../text/untrusted_input.h"
+#include "limits.h"
+#include "mesh_file_system.h"
 
 namespace mrhi {
 namespace {
@@ -33,35 +33,28 @@ class Collector {
 
   void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent) {
     const aiMatrix4x4 transform = parent * node.mTransformation;
-    const bool mirrored = (transform.Determinant() < 0) != (scale_.prod() < 0);
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*scene.mMeshes[node.mMeshes[i]], transform, mirrored);
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*scene.mMeshes[node.mMeshes[i]], transform);
     for (unsigned i = 0; i < node.mNumChildren; ++i) add(scene, *node.mChildren[i], transform);
   }
 
-  void add(const std::array<aiVector3D, 3>& corners) {
+  /// Adds a triangle, unless it is a point or a line. `mirrored`: its corners are listed clockwise.
+  void add(const std::array<aiVector3D, 3>& corners, bool mirrored) {
     std::array<int, 3> triangle;
     for (std::size_t k = 0; k < 3; ++k) triangle[k] = vertex(corners[k]);
-    add(triangle, scale_.prod() < 0);
+    if (mirrored != (scale_.prod() < 0)) std::swap(triangle[1], triangle[2]);
+    if (!is_degenerate(triangle)) mesh_.triangles.push_back(triangle);
   }
 
   TriangleMesh take() { return std::move(mesh_); }
 
  private:
-  void add(const aiMesh& part, const aiMatrix4x4& transform, bool mirrored) {
+  void add(const aiMesh& part, const aiMatrix4x4& transform) {
+    const bool mirrored = transform.Determinant() < 0;
     for (unsigned i = 0; i < part.mNumFaces; ++i) {
       const aiFace& face = part.mFaces[i];
-      if (face.mNumIndices != 3) continue;
-      std::array<int, 3> triangle;
-      for (int k = 0; k < 3; ++k) triangle[k] = vertex(transform * part.mVertices[face.mIndices[k]]);
-      add(triangle, mirrored);
+      const auto corner = [&](unsigned k) { return transform * part.mVertices[face.mIndices[k]]; };
+      if (face.mNumIndices == 3) add({{corner(0), corner(1), corner(2)}}, mirrored);
     }
-  }
-
-  void add(std::array<int, 3> triangle, bool mirrored) {
-    if (mirrored) std::swap(triangle[1], triangle[2]);
-    const bool is_point_or_line =
-        triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
-    if (!is_point_or_line) mesh_.triangles.push_back(triangle);
   }
 
   int vertex(const aiVector3D& place) {
@@ -82,61 +75,79 @@ class Collector {
 const std::vector<std::string> kFormats{".stl", ".obj", ".dae", ".ply", ".gltf", ".glb", ".off", ".3ds"};
 
 std::string lower_extension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
+  return text::in_lower_case(std::filesystem::path(file).extension().string());
 }
 
-void check_format(const std::string& file) {
-  const std::string extension = lower_extension(file);
+constexpr std::size_t kMaxTriangles = 500'000;
+constexpr ChildLimits kLimits{20, std::size_t(1) << 30, std::size_t(256) << 20};
+
+/// Refuses a file of another format, one that is too large, and the pointer that git stores in place of a
+/// large file that it has not fetched.
+void check_file(const std::string& file) {
+  const std::string extension = lower_extension(file), pointer = "version https://git-lfs";
   if (std::find(kFormats.begin(), kFormats.end(), extension) == kFormats.end())
-    throw std::runtime_error("is of the format '" + text::one_line(extension, 20) +
-                             "'; allowed: " + text::joined(kFormats));
-}
-
-/// Refuses the pointer that git stores in place of a large file that it has not fetched.
-void check_fetched(const std::string& file) {
-  const std::string pointer = "version https://git-lfs";
+    throw std::runtime_error("is of the format " + text::quoted(extension, 20) +
+                             "; allowed: " + text::joined(kFormats));
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (!error && size > kMaxMeshBytes)
+    throw std::runtime_error("has " + std::to_string(size) + " bytes; allowed: at most " +
+                             std::to_string(kMaxMeshBytes));
   if (file_text(file, pointer.size()) == pointer)
     throw std::runtime_error(
         "is a pointer of Git LFS; allowed: the file itself, that 'git lfs pull' fetches");
 }
 
-/// Limits for reading meshes. A mesh with the largest number of triangles takes a second or two.
-constexpr std::uintmax_t kMaxBytes = 64u << 20;
-constexpr std::size_t kMaxTriangles = 500'000;
-constexpr ChildLimits kLimits{20, std::size_t(1) << 30, std::size_t(64) << 20};
-
-void check_size(const std::string& file) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error || size <= kMaxBytes) return;
-  throw std::runtime_error("has " + std::to_string(size) + " bytes; allowed: at most " +
-                           std::to_string(kMaxBytes));
-}
-
-template <class Item>
-void append(const std::vector<Item>& items, std::string& bytes) {
+template <class Items>
+void append(const Items& items, std::string& bytes) {
   const std::uint64_t count = items.size();
   bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-  bytes.append(reinterpret_cast<const char*>(items.data()), count * sizeof(Item));
+  bytes.append(reinterpret_cast<const char*>(items.data()), count * sizeof *items.data());
 }
 
-template <class Item>
-std::vector<Item> taken(const std::string& bytes, std::size_t& at) {
+template <class Items>
+void take(const std::string& bytes, std::size_t& at, Items& items) {
   std::uint64_t count = 0;
   std::memcpy(&count, &bytes.at(at), sizeof count);
-  std::vector<Item> items(count);
-  if (count > 0)
-    std::memcpy(static_cast<void*>(items.data()), &bytes[at + sizeof count], count * sizeof(Item));
-  at += sizeof count + count * sizeof(Item);
-  return items;
+  at += sizeof count;
+  items.resize(count);
+  const std::size_t size = count * sizeof *items.data();
+  if (size > 0) std::memcpy(static_cast<void*>(items.data()), &bytes[at], size);
+  at += size;
+}
+
+void append(const std::vector<std::string>& texts, std::string& bytes) {
+  const std::uint64_t count = texts.size();
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  for (const std::string& text : texts) append(text, bytes);
+}
+
+void take(const std::string& bytes, std::size_t& at, std::vector<std::string>& texts) {
+  std::uint64_t count = 0;
+  std::memcpy(&count, &bytes.at(at), sizeof count);
+  at += sizeof count;
+  texts.resize(count);
+  for (std::string& text : texts) take(bytes, at, text);
+}
+
+void check_extent(const Vector3& extent, double part, const char* where) {
+  if (body_limits::kSize.contains(part)) return;
+  throw std::runtime_error("measures " + text::vector(extent) +
+                           " m; allowed: " + body_limits::kSize.describe() + " m " + where +
+                           (part > 1.0 ? "; scale=\"0.001 0.001 0.001\" makes metres of millimetres" : ""));
+}
+
+/// Checks all sizes of a collision mesh, like a box's. A visual mesh may be flat.
+void check_sizes(const TriangleMesh& mesh, bool solid) {
+  const Vector3 extent = box_around(mesh).sizes();
+  check_extent(extent, extent.maxCoeff(), "along the longest axis");
+  if (solid) check_extent(extent, extent.minCoeff(), "along each axis");
 }
 
 /// An STL in the form that assimp reads. Binary: without bytes behind the triangles, which take 50 bytes each
 /// from byte 84 on. Text: in lower case, without leading blanks.
 std::string plain_stl(const std::string& file) {
-  std::string bytes = file_text(file, kMaxBytes).value_or("");
+  std::string bytes = file_text(file, kMaxMeshBytes).value_or("");
   std::uint32_t count = 0;
   if (bytes.size() >= 84) std::memcpy(&count, &bytes[80], sizeof count);
   const std::uint64_t whole = 84 + std::uint64_t(50) * count;
@@ -149,38 +160,25 @@ std::string plain_stl(const std::string& file) {
                              " bytes, its header stands for " + std::to_string(whole) +
                              "; allowed: a whole STL");
   bytes.erase(0, bytes.find_first_not_of(" \t\r\n"));
-  if (bytes.compare(0, 5, "SOLID") == 0) {
-    for (char& c : bytes) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return bytes;
+  return bytes.compare(0, 5, "SOLID") == 0 ? text::in_lower_case(bytes) : bytes;
 }
 
-/// The numbers of a line, with a decimal point in any locale; empty if it contains anything else.
-std::optional<std::vector<double>> numbers_of(const char* c) {
-  static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
-  std::vector<double> numbers;
-  for (c += std::strspn(c, " \t"); *c != '\0'; c += std::strspn(c, " \t")) {
-    char* end = nullptr;
-    if (std::strspn(c, "+-.0123456789eE") != std::strcspn(c, " \t")) return std::nullopt;
-    numbers.push_back(strtod_l(c, &end, c_locale));
-    if (end != c + std::strcspn(c, " \t")) return std::nullopt;
-    c = end;
-  }
-  return numbers;
+/// A plain decimal number; nothing for "inf", "nan", and hexadecimal numbers, which other programs refuse.
+std::optional<double> decimal(const std::string& word) {
+  const bool plain = word.find_first_not_of("+-.0123456789eE") == std::string::npos;
+  return plain ? text::to_number(word) : std::nullopt;
 }
 
 /// Reads a face with vertices of the form V/T/N. Adds its triangle, or both triangles of a convex quadrangle.
 /// Returns false for any other face.
-bool read_face(const char* c, const std::vector<aiVector3D>& vertices,
+bool read_face(const std::vector<std::string>& words, const std::vector<aiVector3D>& vertices,
                std::vector<std::array<aiVector3D, 3>>& triangles) {
   std::vector<aiVector3D> face;
-  for (c += std::strspn(c, " \t"); *c != '\0'; c += std::strspn(c, " \t")) {
-    char* end = nullptr;
-    if (std::isdigit(static_cast<unsigned char>(*c)) == 0) return false;
-    const std::size_t vertex = std::strtoul(c, &end, 10) - 1;
+  for (const std::string& word : words) {
+    const bool plain = word[0] != '/' && word.find_first_not_of("/0123456789") == std::string::npos;
+    const std::size_t vertex = plain ? std::strtoul(word.c_str(), nullptr, 10) - 1 : vertices.size();
     if (vertex >= vertices.size()) return false;
     face.push_back(vertices[vertex]);
-    c = end + std::strspn(end, "/0123456789");
   }
   const auto normal = [&](int i, int j, int k) { return (face[j] - face[i]) ^ (face[k] - face[i]); };
   if (face.size() < 3 || face.size() > 4) return false;
@@ -202,81 +200,167 @@ bool read_piece(const std::string& file, Collector& collector) {
   for (std::string line; std::getline(lines, line);) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
     const std::string kind = line.substr(0, line.find_first_of(" \t"));
-    const char* const rest = line.c_str() + kind.size();
+    const std::vector<std::string> words = text::words(line.substr(kind.size()));
     if (kind == "v") {
-      const auto numbers = numbers_of(rest);
-      if (!numbers || numbers->size() != 3) return false;
-      vertices.emplace_back(ai_real((*numbers)[0]), ai_real((*numbers)[1]), ai_real((*numbers)[2]));
+      std::array<ai_real, 3> place{};
+      if (words.size() != place.size()) return false;
+      for (std::size_t i = 0; i < place.size(); ++i) {
+        const std::optional<double> number = decimal(words[i]);
+        if (!number) return false;
+        place[i] = ai_real(*number);
+      }
+      vertices.emplace_back(place[0], place[1], place[2]);
     } else if (kind == "f") {
-      if (!read_face(rest, vertices, triangles)) return false;
+      if (!read_face(words, vertices, triangles)) return false;
     } else if (kind == "o" || kind == "g" || kind == "usemtl" || kind == "mtllib") {
       if (!triangles.empty() || line.back() == '\\') return false;
     } else if (!line.empty() && kind != "vn" && kind != "vt" && kind != "s" && kind[0] != '#') {
       return false;
     }
   }
-  for (const auto& corners : triangles) collector.add(corners);
+  for (const auto& corners : triangles) collector.add(corners, false);
   return !triangles.empty();
 }
 
 /// Call within limits only: assimp has none, and a small file may expand to an endless scene.
-TriangleMesh read_by_assimp(const std::string& file, const Vector3& scale, Assimp::Importer& importer) {
-  Collector collector(scale);
-  if (lower_extension(file) == ".obj" && read_piece(file, collector)) return collector.take();
+LoadedMesh read_by_assimp(const MeshFile& source, Assimp::Importer& importer) {
+  const std::string& file = source.file;
+  Collector collector(source.scale);
+  if (lower_extension(file) == ".obj" && read_piece(file, collector)) return {collector.take(), "", {}};
+  auto* const files = new MeshFileSystem(file);
+  importer.SetIOHandler(files);  // owns it
   const std::string stl = lower_extension(file) == ".stl" ? plain_stl(file) : "";
   const aiScene* scene =
       stl.empty() ? importer.ReadFile(file, aiProcess_Triangulate)
                   : importer.ReadFileFromMemory(stl.data(), stl.size(), aiProcess_Triangulate, "stl");
   const std::string problem = importer.GetErrorString();
   if (problem.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
-  if (!scene || !scene->mRootNode) {
+  const bool is_read = scene != nullptr && scene->mRootNode != nullptr;
+  if (!is_read && !files->refusal().empty()) throw std::runtime_error(files->refusal());
+  if (!is_read) {
     throw std::runtime_error("cannot be read: " + text::one_line(problem, 120) +
                              "; allowed: a whole STL, OBJ, DAE, PLY or glTF file");
   }
   collector.add(*scene, *scene->mRootNode, aiMatrix4x4());
-  return collector.take();
+  return {collector.take(), "", {files->opened().begin(), files->opened().end()}};
 }
 
-LoadedMesh read(const MeshFile& source, Assimp::Importer& importer) {
-  LoadedMesh loaded;
+/// Returns what `work` does; its problem in place of an exception.
+template <class Work>
+LoadedMesh without_exceptions(const Work& work) {
+  LoadedMesh refused;
   try {
-    check_format(source.file);
-    check_size(source.file);
-    check_fetched(source.file);
-    loaded.mesh = read_by_assimp(source.file, source.scale, importer);
-    const std::size_t count = loaded.mesh.triangles.size();
-    if (count == 0) throw std::runtime_error("has no triangles; allowed: at least one");
-    if (count > kMaxTriangles)
-      throw std::runtime_error("has " + std::to_string(count) + " triangles; allowed: at most " +
-                               std::to_string(kMaxTriangles));
+    return work();
   } catch (const std::bad_alloc&) {
-    loaded = {{}, "takes more memory than is allowed"};
+    refused.problem = "takes more memory than is allowed";
+  } catch (const NoVolume& error) {
+    refused.problem = error.what(), refused.is_flat = true;
   } catch (const std::exception& error) {
-    loaded = {{}, error.what()};
+    refused.problem = error.what();
   }
+  return refused;
+}
+
+LoadedMesh read_surface(const MeshFile& source, Assimp::Importer& importer) {
+  check_file(source.file);
+  LoadedMesh loaded = read_by_assimp(source, importer);
+  const std::size_t count = loaded.mesh.triangles.size();
+  if (count == 0) throw std::runtime_error("has no triangles; allowed: at least one");
+  if (count > kMaxTriangles)
+    throw std::runtime_error("has " + std::to_string(count) + " triangles; allowed: at most " +
+                             std::to_string(kMaxTriangles));
+  check_sizes(loaded.mesh, false);
   return loaded;
 }
 
-std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files) {
-  const std::string bytes = run_in_child(kLimits, [&] {
-    std::string all;
-    Assimp::Importer importer;  // one for all files: creating it takes longer than reading a small one
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-    for (const MeshFile& file : files) {
-      const LoadedMesh loaded = read(file, importer);
-      append(std::vector<char>(loaded.problem.begin(), loaded.problem.end()), all);
-      append(loaded.problem.empty() ? loaded.mesh.vertices : std::vector<Vector3>{}, all);
-      append(loaded.problem.empty() ? loaded.mesh.triangles : std::vector<std::array<int, 3>>{}, all);
-    }
-    return all;
-  });
-  std::vector<LoadedMesh> meshes(files.size());
+LoadedMesh used_as(MeshUse use, LoadedMesh loaded) {
+  if (use == MeshUse::surface || !loaded.problem.empty()) return loaded;
+  if (use == MeshUse::hull) loaded.mesh = convex_hull(loaded.mesh);
+  loaded.assumed = make_solid(loaded.mesh);
+  check_sizes(loaded.mesh, true);
+  return loaded;
+}
+
+/// Reads files in the child process, each once for all its uses. Refuses those beyond the budget.
+class Reader {
+ public:
+  explicit Reader(std::size_t max_triangles) : max_triangles_(max_triangles) {
+    importer_.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  }
+
+  const LoadedMesh& surface_of(const MeshFile& file) {
+    const auto [found, is_new] = surfaces_.emplace(file.file + text::exact(file.scale), LoadedMesh{});
+    if (!is_new) return found->second;
+    found->second = without_exceptions([&] {
+      LoadedMesh loaded = triangles_ > max_triangles_ ? LoadedMesh{} : read_surface(file, importer_);
+      triangles_ += loaded.mesh.triangles.size();
+      if (triangles_ <= max_triangles_) return loaded;
+      throw std::runtime_error("is one too many: the scene's meshes have over " +
+                               std::to_string(max_triangles_) + " triangles; allowed: at most that in all");
+    });
+    return found->second;
+  }
+
+  std::size_t triangles() const { return triangles_; }
+
+ private:
+  const std::size_t max_triangles_;
+  std::size_t triangles_ = 0;
+  Assimp::Importer importer_;  // one for all files: creating it takes longer than reading a small one
+  std::map<std::string, LoadedMesh> surfaces_;
+};
+
+/// The triangles that the files have in all, and the meshes.
+std::string read_all(const std::vector<MeshFile>& files, const MeshBudget& budget) {
+  Reader reader(budget.triangles);
+  for (const MeshFile& file : files) reader.surface_of(file);  // a sum that is too large is found at once
+  std::string all;
+  append(std::to_string(reader.triangles()), all);
+  for (const MeshFile& file : files) {
+    const LoadedMesh loaded = without_exceptions([&] { return used_as(file.use, reader.surface_of(file)); });
+    append(loaded.problem, all);
+    append(loaded.files, all);
+    append(loaded.assumed, all);
+    append(std::string(loaded.is_flat ? 1 : 0, 'f'), all);
+    append(loaded.mesh.vertices, all);
+    append(loaded.mesh.triangles, all);
+    append(loaded.mesh.parts, all);
+  }
+  return all;
+}
+
+std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files, MeshBudget& budget,
+                                      const std::function<bool()>& is_cancelled) {
+  using Clock = std::chrono::steady_clock;
+  ChildLimits limits = kLimits;
+  limits.seconds = std::min(limits.seconds, budget.seconds);
+  if (limits.seconds <= 0.0)
+    throw std::runtime_error("is one too many: the scene's meshes take more time than is allowed in all");
+  const auto begin = Clock::now();
+  const auto spend = [&] { budget.seconds -= std::chrono::duration<double>(Clock::now() - begin).count(); };
+  std::string bytes;
+  try {
+    bytes = run_in_child(
+        limits, [&] { return read_all(files, budget); }, is_cancelled);
+  } catch (const std::runtime_error&) {
+    spend();
+    throw;
+  }
+  spend();
   std::size_t at = 0;
+  std::string triangles, flat;
+  take(bytes, at, triangles);
+  budget.triangles -= std::min<std::size_t>(budget.triangles, std::strtoull(triangles.c_str(), nullptr, 10));
+  std::vector<LoadedMesh> meshes(files.size());
   for (LoadedMesh& mesh : meshes) {
-    const std::vector<char> problem = taken<char>(bytes, at);
-    mesh.problem.assign(problem.begin(), problem.end());
-    mesh.mesh.vertices = taken<Vector3>(bytes, at);
-    mesh.mesh.triangles = taken<std::array<int, 3>>(bytes, at);
+    take(bytes, at, mesh.problem);
+    take(bytes, at, mesh.files);
+    take(bytes, at, mesh.assumed);
+    take(bytes, at, flat);
+    mesh.is_flat = !flat.empty();
+    take(bytes, at, mesh.mesh.vertices);
+    take(bytes, at, mesh.mesh.triangles);
+    take(bytes, at, mesh.mesh.parts);
   }
   return meshes;
 }
@@ -284,16 +368,18 @@ std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files) {
 }  // namespace
 
 /// If the files exceed the limits together, each is read in a process of its own, to find the one at fault.
-std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files) {
+std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files, MeshBudget& budget,
+                                    const std::function<bool()>& is_cancelled) {
   if (files.empty()) return {};
   try {
-    return read_in_child(files);
+    return read_in_child(files, budget, is_cancelled);
   } catch (const std::runtime_error& error) {
-    if (files.size() == 1) return {{{}, error.what()}};
+    if (is_cancelled && is_cancelled()) throw;
+    if (files.size() == 1) return {{{}, error.what(), {}}};
   }
   std::vector<LoadedMesh> meshes;
   meshes.reserve(files.size());
-  for (const MeshFile& file : files) meshes.push_back(load_meshes({file}).front());
+  for (const MeshFile& file : files) meshes.push_back(load_meshes({file}, budget, is_cancelled).front());
   return meshes;
 }
 

@@ -1,139 +1,17 @@
 #include "urdf.h"
 
-#include <tinyxml2.h>
-
-#include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
 #include "limits.h"
 #include "shape_kinds.h"
+#include "urdf_xml.h"
 
 namespace mrhi {
 namespace {
 
-using tinyxml2::XMLElement;
-using tinyxml2::XMLNode;
-using Attributes = std::vector<std::pair<const char*, std::string>>;
-
-std::string attribute(const XMLElement* element, const char* name, const char* otherwise = "") {
-  const char* value = element == nullptr ? nullptr : element->Attribute(name);
-  return value == nullptr || *value == '\0' ? otherwise : value;
-}
-
-std::string in_quotes(const std::string& name) {
-  return "'" + text::one_line(name, 60) + "'";
-}
-
-std::vector<std::string> words_of(std::string text) {
-  std::replace(text.begin(), text.end(), ',', ' ');
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
-std::string trimmed(std::string text) {
-  text.erase(text.find_last_not_of(" \t\r\n") + 1);
-  return text.erase(0, text.find_first_not_of(" \t\r\n"));
-}
-
-/// A value as URDF writes it (attribute) or as SDF does (text).
-std::string value_of(const XMLElement* element) {
-  const char* text = element == nullptr ? nullptr : element->GetText();
-  return trimmed(attribute(element, "value", text == nullptr ? "" : text));
-}
-
-/// The first descendant of this name; nullptr: none.
-const XMLElement* find_within(const XMLElement& element, const char* name) {
-  for (const XMLElement* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
-    const XMLElement* found = std::string(e->Name()) == name ? e : find_within(*e, name);
-    if (found != nullptr) return found;
-  }
-  return nullptr;
-}
-
-template <class Visit>
-void each(const XMLElement& parent, const char* name, const Visit& visit) {
-  for (const XMLElement* e = parent.FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name))
-    visit(*e);
-}
-
-bool is_hull_comment(const XMLNode& node) {
-  return node.ToComment() != nullptr && text::one_line(node.Value()) == "hull";
-}
-
-/// Searches for elements and expressions that xacro would have replaced, except left-over properties, which
-/// have no effect.
-class XacroSearch : public tinyxml2::XMLVisitor {
- public:
-  bool VisitEnter(const XMLElement& element, const tinyxml2::XMLAttribute* attribute) override {
-    const std::string name = element.Name();
-    found = found || (name.compare(0, 6, "xacro:") == 0 && name != "xacro:property");
-    for (; attribute != nullptr && !found; attribute = attribute->Next())
-      for (const char* mark : {"${", "$("})
-        found = found || std::string(attribute->Value()).find(mark) != std::string::npos;
-    return !found && name != "xacro:property";
-  }
-  bool found = false;
-};
-
-void require_urdf(const tinyxml2::XMLDocument& document) {
-  const XMLElement* root = document.RootElement();
-  const std::string name = root == nullptr ? "" : root->Name();
-  if (name == "sdf")
-    throw std::runtime_error("is SDF; allowed: URDF, as the program that made it or 'sdf2urdf' writes it");
-  if (name != "robot")
-    throw std::runtime_error("bad URDF: has no element 'robot'" +
-                             (name.empty() ? std::string() : " but " + in_quotes(name)) +
-                             "; allowed: a URDF, a robot of links");
-  XacroSearch xacro;
-  document.Accept(&xacro);
-  if (xacro.found)
-    throw std::runtime_error(
-        "is xacro; allowed: the URDF that 'rosrun xacro xacro FILE -o OTHER.urdf' makes of it");
-}
-
-/// Valid names of the links or joints of a URDF: each keeps its name, or gets a similar one.
-class Names {
- public:
-  explicit Names(const XMLElement& robot, const char* kind, Warnings& warnings) {
-    each(robot, kind, [&](const XMLElement& element) {
-      const std::string name = attribute(&element, "name");
-      if (is_name(name)) made_[name] = name, taken_.insert(name);
-    });
-    each(robot, kind, [&](const XMLElement& element) {
-      const std::string name = attribute(&element, "name");
-      if (name.empty() || made_.count(name) > 0) return;
-      const std::string type = attribute(&element, "type"), made = add(name);
-      if (type == "fixed" || type == "floating") return;  // these joints do not appear in the scene
-      warnings.add(std::string(kind) + "s have other names, as topics and frames need " + kNameIs,
-                   in_quotes(name) + " is '" + made + "'");
-    });
-  }
-
-  std::string add(const std::string& name) {
-    constexpr std::size_t kMaxLength = 60;  // leaves room for a number
-    std::string base;
-    for (const char c : name.substr(0, kMaxLength)) base += is_name("a" + std::string(1, c)) ? c : '_';
-    if (base.empty() || base.front() == '-') base = "_" + base;
-    std::string made = base;
-    for (int i = 2; !taken_.insert(made).second; ++i) made = base + "_" + std::to_string(i);
-    return made_[name] = made;
-  }
-
-  std::string of(const std::string& name) const {
-    const auto found = made_.find(name);
-    return found == made_.end() ? name : found->second;
-  }
-
- private:
-  std::map<std::string, std::string> made_;
-  std::set<std::string> taken_;
-};
+using namespace urdf_xml;
 
 /// Writes a URDF again, element by element, in the form that urdfdom reads.
 class Normaliser {
@@ -174,22 +52,21 @@ class Normaliser {
   }
 
   /// Refuses loops and second parents: urdfdom never frees the links of a loop.
-  void check_tree() const {
-    std::map<std::string, std::string> parents;
+  void check_tree() {
     each(robot_, "joint", [&](const XMLElement& joint) {
       const std::string parent = link_of(joint, "parent"), child = link_of(joint, "child");
-      if (parent.empty() || child.empty() || parents.emplace(child, parent).second) return;
-      throw std::runtime_error("joint " + in_quotes(attribute(&joint, "name")) +
-                               " is a second parent of link " + in_quotes(child) +
+      if (parent.empty() || child.empty() || parents_.emplace(child, parent).second) return;
+      throw std::runtime_error("joint " + text::quoted(attribute(&joint, "name")) +
+                               " is a second parent of link " + text::quoted(child) +
                                "; allowed: one joint to each link");
     });
     std::set<std::string> checked;
-    for (const auto& entry : parents) {
+    for (const auto& entry : parents_) {
       std::set<std::string> path;
-      for (auto link = parents.find(entry.first); link != parents.end() && checked.count(link->first) == 0;
-           link = parents.find(link->second))
+      for (auto link = parents_.find(entry.first); link != parents_.end() && checked.count(link->first) == 0;
+           link = parents_.find(link->second))
         if (!path.insert(link->first).second)
-          throw std::runtime_error("bad URDF: link " + in_quotes(link->first) +
+          throw std::runtime_error("bad URDF: link " + text::quoted(link->first) +
                                    " is in a loop of joints; allowed: a tree of links");
       checked.merge(path);
     }
@@ -230,7 +107,7 @@ class Normaliser {
 
   void write_link(const XMLElement& link) {
     const std::string name = links_.of(attribute(&link, "name")),
-                      where = "link " + in_quotes(attribute(&link, "name"));
+                      where = "link " + text::quoted(attribute(&link, "name"));
     result_.links.push_back(name);
     open("link", {{"name", name}});
     write_inertial(link, where + " inertial");
@@ -239,6 +116,9 @@ class Normaliser {
         const XMLElement* geometry = element.FirstChildElement("geometry");
         if (geometry == nullptr || geometry->FirstChildElement() == nullptr)
           return warnings_.add("visuals and collisions without a shape are left out", where + " " + kind);
+        if (geometry->FirstChildElement()->NextSiblingElement() != nullptr ||
+            geometry->NextSiblingElement("geometry") != nullptr)
+          warnings_.add("a visual or collision has one shape: its others are left out", where + " " + kind);
         open(kind.c_str(), {});
         write_origin(element, where + " " + kind);
         write_geometry(*geometry, where + " " + kind);
@@ -261,7 +141,11 @@ class Normaliser {
     open("inertial", {});
     write_origin(*inertial, where);
     const std::string value = value_of(mass);
-    write("mass", {{"value", value.empty() ? "0" : value}});
+    if (value.empty())
+      throw std::runtime_error(where +
+                               ": mass has no value; allowed: a number of kg, or no <mass> for that of "
+                               "the volume");
+    write("mass", {{"value", value}});
     const XMLElement* inertia = inertial->FirstChildElement("inertia");
     Attributes moments;
     for (const char* moment : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"})
@@ -275,7 +159,7 @@ class Normaliser {
     std::vector<std::string> words = words_of(attribute(element, name));
     if (words.size() > 3) {
       warnings_.add("vectors of more than three numbers: the first three are taken",
-                    where + " " + name + " " + in_quotes(attribute(element, name)));
+                    where + " " + name + " " + text::quoted(attribute(element, name)));
       words.resize(3);
     }
     return text::joined(words, " ");
@@ -292,12 +176,12 @@ class Normaliser {
       constexpr double kTurn = 6.2832;
       const double angle = std::abs(text::to_number(word).value_or(0.0));
       if (!(angle <= joint_ranges::kCoordinate.max))
-        throw std::runtime_error(where + ": rpy " + in_quotes(attribute(origin, "rpy")) +
+        throw std::runtime_error(where + ": rpy " + text::quoted(attribute(origin, "rpy")) +
                                  " is not allowed; allowed: three angles, each " +
                                  joint_ranges::kCoordinate.describe() + " rad");
       if (angle > kTurn)
         warnings_.add("angles of more than a turn, which URDF takes in radians",
-                      where + " rpy " + in_quotes(attribute(origin, "rpy")));
+                      where + " rpy " + text::quoted(attribute(origin, "rpy")));
     }
     write("origin", attributes);
   }
@@ -339,7 +223,7 @@ class Normaliser {
     Attributes attributes{{"filename", (hull ? kHullPrefix : "") + trimmed(attribute(&mesh, "filename"))}};
     std::string scale = vector(&mesh, "scale", where);
     if (words_of(scale).size() == 1) {
-      warnings_.add("a scale of one number is that of all axes", in_quotes(scale));
+      warnings_.add("a scale of one number is that of all axes", text::quoted(scale));
       scale += " " + scale + " " + scale;
     }
     if (!scale.empty()) attributes.emplace_back("scale", scale);
@@ -353,7 +237,7 @@ class Normaliser {
     if (!is_defined(given) && named == materials_.end()) {
       if (!name.empty())
         warnings_.add("materials without a color in this file are drawn grey",
-                      in_quotes(name) + " of " + where);
+                      text::quoted(name) + " of " + where);
       return;
     }
     const XMLElement& material = is_defined(given) ? given : *named->second;
@@ -373,7 +257,7 @@ class Normaliser {
     for (const std::string& word : words) {
       const std::optional<double> number = text::to_number(word);
       if (!number) {
-        warnings_.add("colors that are no numbers are drawn grey", in_quotes(given) + " of " + where);
+        warnings_.add("colors that are no numbers are drawn grey", text::quoted(given) + " of " + where);
         return "0.7 0.7 0.7 1";
       }
       parts.push_back(*number);
@@ -384,7 +268,7 @@ class Normaliser {
     const bool bytes = !ratios && std::all_of(parts.begin(), parts.end() - has_opacity, is_byte) &&
                        (!has_opacity || is_byte(parts[3]) || is_ratio(parts[3]));
     if (!ratios && !bytes) return text::joined(words, " ");
-    if (bytes) warnings_.add("colors of 0 to 255 are divided by 255", in_quotes(given) + " of " + where);
+    if (bytes) warnings_.add("colors of 0 to 255 are divided by 255", text::quoted(given) + " of " + where);
     std::vector<std::string> scaled;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const double full = bytes && (i < 3 || parts[i] > 1.0) ? 255.0 : 1.0;
@@ -394,7 +278,7 @@ class Normaliser {
   }
 
   void write_joint(const XMLElement& joint) {
-    const std::string name = attribute(&joint, "name"), what = in_quotes(name);
+    const std::string name = attribute(&joint, "name"), what = text::quoted(name);
     std::string type = attribute(&joint, "type");
     const Attributes limit =
         type == "revolute" || type == "prismatic" ? read_limit(joint, what, type) : Attributes();
@@ -451,27 +335,24 @@ class Normaliser {
   /// body. A root with a shape or a mass is a free body, and so are links that are all fixed on an empty
   /// root. The name "world" makes them fixtures.
   void write_world() {
-    std::set<std::string> parents, children;
-    bool all_fixed = true;
-    each(robot_, "joint", [&](const XMLElement& joint) {
-      parents.insert(link_of(joint, "parent"));
-      children.insert(link_of(joint, "child"));
-      all_fixed = all_fixed && attribute(&joint, "type") == "fixed";
-    });
+    bool has_world = false, all_fixed = true;
+    each(robot_, "joint",
+         [&](const XMLElement& joint) { all_fixed = all_fixed && attribute(&joint, "type") == "fixed"; });
     std::vector<const XMLElement*> roots;
-    bool has_world = false;
     each(robot_, "link", [&](const XMLElement& link) {
       has_world = has_world || attribute(&link, "name") == "world";
-      if (children.count(links_.of(attribute(&link, "name"))) == 0) roots.push_back(&link);
+      if (parents_.count(links_.of(attribute(&link, "name"))) == 0) roots.push_back(&link);
     });
-    if (parents.count("world") > 0 && !has_world) return write("link", {{"name", "world"}});
+    const bool needs_world = std::any_of(parents_.begin(), parents_.end(),
+                                         [](const auto& entry) { return entry.second == "world"; });
+    if (needs_world && !has_world) return write("link", {{"name", "world"}});
     if (roots.size() != 1) return;  // urdfdom refuses it
     const std::string root = links_.of(attribute(roots[0], "name"));
     if (is_empty(*roots[0])) {
-      if (root == "world" || children.empty() || !all_fixed) return;
+      if (root == "world" || parents_.empty() || !all_fixed) return;
       warnings_.add(
           "links on fixed joints are one free body; a root that is named 'world' makes them fixtures",
-          in_quotes(attribute(roots[0], "name")));
+          text::quoted(attribute(roots[0], "name")));
     }
     const std::string world = links_.add("world ");
     write("link", {{"name", world}});
@@ -485,6 +366,7 @@ class Normaliser {
   Warnings& warnings_;
   Names links_, joints_;
   tinyxml2::XMLPrinter out_;
+  std::map<std::string, std::string> parents_;          // of links that have one
   std::map<std::string, const XMLElement*> materials_;  // that have a colour or texture, by name
   int materials_written_ = 0;
   NormalUrdf result_;

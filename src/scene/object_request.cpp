@@ -1,11 +1,13 @@
 #include "mr_hand_interaction/scene/object_request.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "../text/files.h"
 #include "../text/text.h"
 #include "../text/untrusted_input.h"
+#include "limits.h"
 #include "shape_kinds.h"
 #include "urdf.h"
 
@@ -16,18 +18,22 @@ const std::string kSource = "spawn";  // in place of a file's name
 
 const ShapeKind& kind_of(const std::string& name) {
   if (const ShapeKind* kind = find_shape_kind(name)) return *kind;
-  throw SceneError(kSource + ": shape '" + text::one_line(name, 60) +
-                   "' is not known; allowed: " + shape_kind_names() + ", or a URDF in its place");
+  throw SceneError(kSource + ": shape " + text::quoted(name) +
+                   " is not known; allowed: " + shape_kind_names() + ", or a URDF in its place");
 }
 
 /// XML of a link with that shape. It has no inertia, so the loader computes the shape's.
-PlacedLink placed_shape(const ObjectRequest& request) {
+LinkedBody placed_shape(const ObjectRequest& request) {
   const ShapeKind& kind = kind_of(request.shape);
   if (request.size.size() != kind.sizes.size()) {
     throw SceneError(kSource + ": size of a " + kind.name + " has " + std::to_string(request.size.size()) +
                      " numbers; allowed: " + std::to_string(kind.sizes.size()) + " (" +
                      text::joined(kind.sizes) + ") [m]");
   }
+  const Range& range = body_limits::kSize;
+  if (!std::all_of(request.size.begin(), request.size.end(), [&](double s) { return range.contains(s); }))
+    throw SceneError(kSource + ": " + kind.describe(request.size) +
+                     " m is not allowed; allowed: " + range.describe() + " m");
   auto link = std::make_shared<urdf::Link>();
   auto collision = std::make_shared<urdf::Collision>();
   auto geometry = std::make_shared<urdf::Mesh>();
@@ -37,19 +43,19 @@ PlacedLink placed_shape(const ObjectRequest& request) {
   link->inertial = std::make_shared<urdf::Inertial>();
   link->inertial->mass = request.mass;
   link->name = request.name;
-  return {link, request.mass == 0.0, request.pose, {}};
+  return {{{link, Pose{}}}, request.mass == 0.0, request.pose};
 }
 
-PlacedLink placed_urdf(const ObjectRequest& request, UrdfDocument& document) {
+LinkedBody placed_urdf(const ObjectRequest& request, UrdfDocument& document) {
   document = parse_urdf(kSource, request.urdf);
-  PlacedLink placed = only_body(kSource, document);
+  LinkedBody placed = only_body(kSource, document);
   placed.in_world = request.pose;
   if (request.name.empty()) return placed;
-  auto renamed = std::make_shared<urdf::Link>(*placed.link);
+  auto renamed = std::make_shared<urdf::Link>(placed.link());
   const auto friction = document.friction.find(renamed->name);
   if (friction != document.friction.end()) document.friction[request.name] = friction->second;
   renamed->name = request.name;
-  placed.link = renamed;
+  placed.parts.front().link = renamed;
   return placed;
 }
 
@@ -67,7 +73,7 @@ void check_motion(const ObjectRequest& request) {
 Scene scene_of_body(const ObjectRequest& request, const SceneOptions& options) {
   check_motion(request);
   UrdfDocument document;
-  PlacedLink placed = request.urdf.empty() ? placed_shape(request) : placed_urdf(request, document);
+  LinkedBody placed = request.urdf.empty() ? placed_shape(request) : placed_urdf(request, document);
   placed.in_world.orientation.normalize();
   Scene scene;
   read_body(kSource, request.folder, document, placed, options, scene);
@@ -83,15 +89,14 @@ Scene scene_of_body(const ObjectRequest& request, const SceneOptions& options) {
 
 void put_before(const std::string& name, Scene& scene) {
   if (name.empty()) return;
-  for (Body& body : scene.bodies) body.name = name + "_" + body.name;
-  for (Joint& joint : scene.joints) joint.name = name + "_" + joint.name;
-  const auto check = [](const std::string& made) {
-    if (!is_name(made))
-      throw SceneError(kSource + ": the name '" + text::one_line(made, 80) +
-                       "' is not allowed; allowed: " + kNameIs);
+  const auto rename = [&](std::string& own) {
+    own = name + "_" + own;
+    if (!is_name(own))
+      throw SceneError(kSource + ": the name " + text::quoted(own, 80) +
+                       " is not allowed; allowed: " + kNameIs);
   };
-  for (const Body& body : scene.bodies) check(body.name);
-  for (const Joint& joint : scene.joints) check(joint.name);
+  for (Body& body : scene.bodies) rename(body.name);
+  for (Joint& joint : scene.joints) rename(joint.name);
 }
 
 }  // namespace

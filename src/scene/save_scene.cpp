@@ -39,7 +39,7 @@ std::string origin(const Pose& pose) {
 }
 
 /// The text of an XML attribute, with escaped characters.
-std::string quoted(const std::string& text) {
+std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text)
     result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
@@ -66,15 +66,15 @@ class Writer {
     for (const auto& [file, text] : texts_) {
       std::error_code ignored;
       if (fs::symlink_status(file, ignored).type() != fs::file_type::not_found)
-        throw std::invalid_argument("'" + text::one_line(file.string()) +
-                                    "' is there already; allowed: a file that is not");
+        throw std::invalid_argument(text::quoted(file.string(), 300) +
+                                    " is there already; allowed: a file that is not");
     }
     for (const auto& [file, text] : texts_) save(file, text);
   }
 
  private:
   void write_urdf() {
-    out_ << "<?xml version=\"1.0\"?>\n<robot name=\"" << quoted(scene_.name) << "\">\n  <link name=\""
+    out_ << "<?xml version=\"1.0\"?>\n<robot name=\"" << escaped(scene_.name) << "\">\n  <link name=\""
          << root() << "\"/>\n";
     for (const Body& body : scene_.bodies) {
       if (!body.is_operator) write_link(body);
@@ -135,7 +135,7 @@ class Writer {
       if (const auto sizes = kind.sizes_of(shape)) return element(kind, *sizes);
     const Mesh& mesh = std::get<Mesh>(shape);
     if (solid) return "<mesh filename=\"" + mesh_file(mesh) + "\"/>";
-    return "<mesh filename=\"" + quoted(mesh.uri) + "\" scale=\"" + numbers(mesh.scale) + "\"/>";
+    return "<mesh filename=\"" + escaped(mesh.uri) + "\" scale=\"" + numbers(mesh.scale) + "\"/>";
   }
 
   /// Adds an OBJ file beside the scene with a collision mesh (scaled, or a hull), and returns its name.
@@ -275,7 +275,7 @@ class Writer {
       if (fs::is_regular_file(written.first, ignored)) fs::remove(written.first, ignored);
       if (written.first == file) break;
     }
-    throw std::runtime_error("cannot write '" + text::one_line(file_.string()) + "': " + why);
+    throw std::runtime_error("cannot write " + text::quoted(file_.string(), 300) + ": " + why);
   }
 
   const Scene& scene_;
@@ -323,7 +323,7 @@ Scene scene_as_it_is(const Scene& scene, const std::vector<BodyState>& bodies,
 
 void save_scene(const Scene& scene, const std::string& urdf_file) {
   const fs::path file = urdf_file;
-  const std::string shown = "'" + text::one_line(urdf_file, 200) + "'";
+  const std::string shown = text::quoted(urdf_file, 200);
   check_path(file, shown);
   Writer(scene, file).write();
 }

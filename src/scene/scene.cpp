@@ -6,7 +6,6 @@
 
 #include "../text/text.h"
 #include "limits.h"
-#include "mr_hand_interaction/scene/body.h"
 
 namespace mrhi {
 
@@ -35,7 +34,7 @@ constexpr double kMinMomentRatio = 1e-12;  // smallest principal moment over the
 
 [[noreturn]] void refuse(const Body& body, const std::string& what, const Range& allowed,
                          const std::string& unit) {
-  throw std::invalid_argument("body '" + text::one_line(body.name, 60) + "': " + what +
+  throw std::invalid_argument("body " + text::quoted(body.name) + ": " + what +
                               " is not allowed; allowed: " + allowed.describe() + unit);
 }
 
@@ -99,17 +98,6 @@ template <typename Named>
 std::optional<int> index_of(const std::string& name, const std::vector<Named>& all) {
   const Named* const found = text::find_named(all, name);
   return found == nullptr ? std::nullopt : std::make_optional(static_cast<int>(found - all.data()));
-}
-
-/// For each body of the scene: 1 if it is this one or a descendant by joints. A body's joint precedes those
-/// of its children.
-std::vector<char> removed_with(std::size_t body, const Scene& scene) {
-  std::vector<char> removed(scene.bodies.size(), 0);
-  removed[body] = 1;
-  for (const Joint& joint : scene.joints) {
-    if (joint.parent != Joint::kWorld && removed[joint.parent] != 0) removed[joint.child] = 1;
-  }
-  return removed;
 }
 
 /// Keeps the items for which `stays` returns true; it also updates their indices.
@@ -219,22 +207,21 @@ void append(const Scene& part, Scene& scene) {
 }
 
 std::vector<std::size_t> hanging_on(std::size_t body, const Scene& scene) {
-  const std::vector<char> removed = removed_with(body, scene);
-  std::vector<std::size_t> bodies;
-  for (std::size_t b = 0; b < removed.size(); ++b) {
-    if (removed[b] != 0) bodies.push_back(b);
-  }
+  std::vector<std::size_t> bodies{body};
+  for (const Joint& joint : scene.joints)  // a body's joint precedes those of its children
+    if (std::find(bodies.begin(), bodies.end(), joint.parent) != bodies.end()) bodies.push_back(joint.child);
+  std::sort(bodies.begin(), bodies.end());
   return bodies;
 }
 
 void remove_body(std::size_t body, Scene& scene) {
-  const std::vector<char> removed = removed_with(body, scene);
-  std::vector<int> place;  // new index of each body; -1: removed
-  place.reserve(removed.size());
+  std::vector<int> place(scene.bodies.size(), 0);  // new index of each body; -1: removed
+  for (const std::size_t removed : hanging_on(body, scene)) place[removed] = -1;
   int staying = 0;
-  for (const char gone : removed) place.push_back(gone != 0 ? -1 : staying++);
+  for (int& index : place)
+    if (index == 0) index = staying++;
   std::size_t b = 0;
-  keep(scene.bodies, [&](const Body&) { return removed[b++] == 0; });
+  keep(scene.bodies, [&](const Body&) { return place[b++] >= 0; });
   const auto stays = [&](int& index) { return (index = place[index]) >= 0; };
   keep(scene.joints, [&](Joint& joint) {
     if (joint.parent != Joint::kWorld) stays(joint.parent);

@@ -74,19 +74,18 @@ class BodyReader {
              UrdfDocument& document)
       : source_(source), options_(options), shapes_(shapes), document_(document) {}
 
-  Body read(const PlacedLink& placed) {
-    const urdf::Link& link = *placed.link;
+  Body read(const LinkedBody& linked) {
+    const std::vector<LinkPart>& parts = linked.parts;
+    const urdf::Link& link = linked.link();
     if (!is_name(link.name)) fail(link, std::string("this name is not allowed; allowed: ") + kNameIs);
     Body body;
     body.name = link.name;
-    body.fixed = placed.fixed;
+    body.fixed = linked.fixed;
     body.material = options_.default_material;
-    std::vector<LinkPart> parts{{placed.link, Pose{}}};
-    parts.insert(parts.end(), placed.merged.begin(), placed.merged.end());
     read_collisions(parts, body);
     for (const LinkPart& part : parts) read_friction(part.link->name, body);
     if (!body.fixed) weigh(parts, body);
-    body.start = placed.in_world * body.link_in_body.inverse();
+    body.start = linked.in_world * body.link_in_body.inverse();
     for (const LinkPart& part : parts) read_visuals(part, body);
     if (body.visuals.empty())
       for (const PlacedShape& shape : body.shapes) body.visuals.push_back({shape.shape, shape.pose});
@@ -101,33 +100,32 @@ class BodyReader {
   /// Reads the collision shapes into the first link's frame, also by part, for the parts' inertias.
   void read_collisions(const std::vector<LinkPart>& parts, Body& body) {
     of_parts_.assign(parts.size(), {});
-    flat_ = false;
-    add_shapes(parts, &urdf::Link::collision_array, "collision ");
-    const auto has_none = [](const auto& shapes) { return shapes.empty(); };
-    if (!body.fixed && std::all_of(of_parts_.begin(), of_parts_.end(), has_none)) {
-      add_shapes(parts, &urdf::Link::visual_array, "visual ");
-      const bool none = std::all_of(of_parts_.begin(), of_parts_.end(), has_none);
-      if (none && moves(*parts[0].link->parent_joint)) return;  // a link of a mechanism
-      if (none)
-        fail(*parts[0].link, "a body that moves has no collision with a volume" +
-                                 std::string(flat_ ? ", its meshes are flat sheets" : "") +
-                                 "; allowed: 1 to 255 shapes");
-      document_.warnings.add("links without a collision touch with their visuals", "'" + body.name + "'");
-    }
-    for (const auto& shapes : of_parts_) body.shapes.insert(body.shapes.end(), shapes.begin(), shapes.end());
+    left_out_ = false;
+    add_shapes(parts, &urdf::Link::collision_array, "collision ", body);
+    if (body.fixed || !body.shapes.empty()) return;
+    add_shapes(parts, &urdf::Link::visual_array, "visual ", body);
+    if (!body.shapes.empty())
+      return document_.warnings.add("links without a collision touch with their visuals",
+                                    "'" + body.name + "'");
+    if (!moves(*parts[0].link))  // else a link of a mechanism, which needs no shape
+      fail(*parts[0].link,
+           "a body that moves has no collision with a volume" +
+               std::string(left_out_ ? ", as flat sheets and very small shapes are left out" : "") +
+               "; allowed: 1 to 255 shapes");
   }
 
   template <class Elements>
-  void add_shapes(const std::vector<LinkPart>& parts, Elements urdf::Link::*elements, const char* kind) {
+  void add_shapes(const std::vector<LinkPart>& parts, Elements urdf::Link::*elements, const char* kind,
+                  Body& body) {
     for (std::size_t i = 0; i < parts.size(); ++i) {
       int number = 0;
       for (const auto& element : *parts[i].link.*elements) {
         const std::string where = "link '" + parts[i].link->name + "' " + kind + std::to_string(++number);
-        if (!element->geometry) throw SceneError(source_ + ": " + where + ": no geometry; allowed: a shape");
         const auto shape = shapes_.read(*element->geometry, where, true);
+        left_out_ = left_out_ || !shape;
         if (shape) of_parts_[i].push_back({*shape, parts[i].pose * to_pose(element->origin)});
-        flat_ = flat_ || !shape;
       }
+      body.shapes.insert(body.shapes.end(), of_parts_[i].begin(), of_parts_[i].end());
     }
   }
 
@@ -202,7 +200,6 @@ class BodyReader {
     for (std::size_t i = 0; i < part.link->visual_array.size(); ++i) {
       const urdf::Visual& given = *part.link->visual_array[i];
       const std::string element = "link '" + part.link->name + "' visual " + std::to_string(i + 1);
-      if (!given.geometry) throw SceneError(source_ + ": " + element + ": no geometry; allowed: a shape");
       const std::optional<Shape> shape = shapes_.read(*given.geometry, element, false);
       if (!shape) continue;
       Visual visual{*shape, body.link_in_body * (part.pose * to_pose(given.origin))};
@@ -261,29 +258,24 @@ class BodyReader {
   }
 
   [[noreturn]] void fail(const urdf::Link& link, const std::string& what) const {
-    throw SceneError(source_ + ": link '" + text::one_line(link.name, 60) + "': " + what);
+    throw SceneError(source_ + ": link " + text::quoted(link.name) + ": " + what);
   }
 
   const std::string& source_;
   const SceneOptions& options_;
   ShapeReader& shapes_;
   UrdfDocument& document_;
-  bool flat_ = false;                               // a shape of the current body is a flat sheet
+  bool left_out_ = false;                           // a shape of the current body has no volume
   std::vector<std::vector<PlacedShape>> of_parts_;  // of the current body, in its first link's frame
 };
 
 void read_bodies(const std::string& source, const std::string& folder, UrdfDocument& document,
-                 const std::vector<PlacedLink>& placed, const SceneOptions& options, Scene& scene) {
+                 const std::vector<LinkedBody>& bodies, const SceneOptions& options, Scene& scene) {
   ShapeReader shapes(source, folder, options, document.warnings);
   BodyReader reader(source, options, shapes, document);
-  std::vector<urdf::LinkConstSharedPtr> links;
-  for (const PlacedLink& body : placed) {
-    links.push_back(body.link);
-    for (const LinkPart& part : body.merged) links.push_back(part.link);
-  }
-  shapes.prepare(links);
-  for (const PlacedLink& body : placed)
-    if (!body.fixed || has_shape(body)) scene.bodies.push_back(reader.read(body));
+  shapes.prepare(bodies);
+  for (const LinkedBody& body : bodies)
+    if (!body.fixed || body.has_shape()) scene.bodies.push_back(reader.read(body));
   scene.mesh_files = shapes.files();
 }
 
@@ -324,29 +316,29 @@ void widen_bounds(Scene& scene) {
 void read_urdf(const std::string& source, const std::string& folder, const std::string& xml,
                const SceneOptions& options, Scene& scene) {
   UrdfDocument document = parse_urdf(source, xml);
-  read_bodies(source, folder, document, place_links(source, document), options, scene);
+  read_bodies(source, folder, document, linked_bodies(source, document), options, scene);
   if (scene.bodies.empty()) throw SceneError(source + ": no bodies; allowed: at least one link with a shape");
   scene.joints = read_joints(source, document, scene);
   scene.warnings = document.warnings.lines();
 }
 
 void read_body(const std::string& source, const std::string& folder, UrdfDocument& document,
-               const PlacedLink& placed, const SceneOptions& options, Scene& scene) {
-  read_bodies(source, folder, document, {placed}, options, scene);
+               const LinkedBody& linked, const SceneOptions& options, Scene& scene) {
+  read_bodies(source, folder, document, {linked}, options, scene);
   scene.warnings = document.warnings.lines();
 }
 
-PlacedLink only_body(const std::string& source, UrdfDocument& document) {
-  std::vector<PlacedLink> found;
-  for (const PlacedLink& placed : place_links(source, document))
-    if (has_shape(placed)) found.push_back(placed);
+LinkedBody only_body(const std::string& source, UrdfDocument& document) {
+  std::vector<LinkedBody> found;
+  for (const LinkedBody& body : linked_bodies(source, document))
+    if (body.has_shape()) found.push_back(body);
   if (found.size() != 1)
     throw SceneError(source + ": this URDF has " + (found.empty() ? "no link" : "several links") +
                      " with a shape; allowed: one");
-  const urdf::Joint& joint = *found.front().link->parent_joint;
-  if (moves(joint))
-    throw SceneError(source + ": joint '" + text::one_line(joint.name, 60) +
-                     "' turns or slides; allowed: floating, fixed");
+  const urdf::Link& link = found.front().link();
+  if (moves(link))
+    throw SceneError(source + ": joint " + text::quoted(link.parent_joint->name) +
+                     " turns or slides; allowed: floating, fixed");
   return found.front();
 }
 

@@ -1,12 +1,9 @@
 #include "urdf.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "../text/text.h"
 #include "../text/yaml.h"
 #include "limits.h"
-#include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
@@ -205,9 +202,7 @@ void read_material(const Element& element, Body& body) {
   for (const MaterialField& field : material_fields()) {
     if (std::find(keys.begin(), keys.end(), field.name) == keys.end()) continue;
     const Element given = element.at(field.name);
-    const std::optional<double> value = yaml_number(given.node);
-    if (!value || !field.range.contains(*value)) given.refuse(field.range.describe() + field.unit);
-    body.material.*field.value = *value;
+    body.material.*field.value = read_number(given, field.range, field.unit);
     body.own_material.*field.own = true;
   }
   if (const auto conflict = material_conflict(body.material)) element.fail(*conflict);

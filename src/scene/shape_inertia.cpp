@@ -87,20 +87,13 @@ bool may_overlap(const std::vector<PlacedShape>& shapes) {
 SolidMoments sum_of(const std::vector<PlacedShape>& shapes) {
   SolidMoments all;
   for (const PlacedShape& shape : shapes) {
-    const Mesh* const mesh = std::get_if<Mesh>(&shape.shape);
+    const TriangleMesh* const mesh = mesh_of(shape);
     const SolidMoments own = mesh != nullptr
-                                 ? signed_moments(*mesh->triangles)
+                                 ? signed_moments(*mesh)
                                  : std::visit([](const auto& any) { return any.moments(); }, shape.shape);
     add(placed(own, shape.pose), 1.0, all);
   }
   return all;
-}
-
-bool has_parts(const std::vector<PlacedShape>& shapes) {
-  return std::any_of(shapes.begin(), shapes.end(), [](const PlacedShape& shape) {
-    const Mesh* const mesh = std::get_if<Mesh>(&shape.shape);
-    return mesh != nullptr && !mesh->triangles->parts.empty();
-  });
 }
 
 /// Crossings of a mesh's surface by lines along x, on a grid in y and z.
@@ -181,9 +174,9 @@ void append(const TriangleMesh& mesh, const Pose& pose, TriangleMesh& all) {
   for (const auto& t : mesh.triangles) all.triangles.push_back({{t[0] + first, t[1] + first, t[2] + first}});
 }
 
-Eigen::AlignedBox3d box_around(const TriangleMesh& mesh) {
+Eigen::AlignedBox3d box_around(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& triangles) {
   Eigen::AlignedBox3d box;
-  for (const auto& triangle : mesh.triangles)
+  for (const auto& triangle : triangles)
     for (const int v : triangle) box.extend(mesh.vertices[v]);
   return box;
 }
@@ -224,8 +217,8 @@ TriangleMesh convex_hull(const TriangleMesh& mesh) {
 /// Returns a mesh unchanged.
 TriangleMesh surface_of(const PlacedShape& shape) {
   TriangleMesh mesh;
-  if (const Mesh* const given = std::get_if<Mesh>(&shape.shape)) {
-    mesh = *given->triangles;
+  if (const TriangleMesh* const given = mesh_of(shape)) {
+    mesh = *given;
   } else {
     constexpr int kDirections = 300;
     const auto add_farthest = [&](const Vector3& n) {
@@ -252,10 +245,6 @@ SolidMoments shared_moments(const TriangleMesh& mesh, double volume) {
   return shared.volume > kNeglected * volume ? shared : SolidMoments{};
 }
 
-bool overlaps_itself(const TriangleMesh& mesh) {
-  return shared_moments(mesh, signed_volume(mesh)).volume > 0.0;
-}
-
 /// Sums the signed tetrahedra from the origin to the triangles (Tonon 2004).
 ///
 /// For a tetrahedron with the corners 0, a, b, c:
@@ -280,7 +269,10 @@ SolidMoments signed_moments(const TriangleMesh& mesh) {
 
 SolidMoments moments_of(const std::vector<PlacedShape>& shapes) {
   SolidMoments all = sum_of(shapes);
-  if (!has_parts(shapes) && !may_overlap(shapes)) return all;
+  const bool has_parts = std::any_of(shapes.begin(), shapes.end(), [](const PlacedShape& shape) {
+    return mesh_of(shape) != nullptr && !mesh_of(shape)->parts.empty();
+  });
+  if (!has_parts && !may_overlap(shapes)) return all;
   TriangleMesh surfaces;
   for (const PlacedShape& shape : shapes) append(surface_of(shape), Pose{}, surfaces);
   add(shared_moments(surfaces, all.volume), -1.0, all);
@@ -288,9 +280,7 @@ SolidMoments moments_of(const std::vector<PlacedShape>& shapes) {
 }
 
 Matrix3 inertia_of(const std::vector<PlacedShape>& shapes, double mass) {
-  const bool has_mesh = std::any_of(shapes.begin(), shapes.end(), [](const PlacedShape& shape) {
-    return std::holds_alternative<Mesh>(shape.shape);
-  });
+  const bool has_mesh = std::any_of(shapes.begin(), shapes.end(), mesh_of);
   const SolidMoments moments = has_mesh ? moments_of(shapes) : sum_of(shapes);
   if (!(moments.volume > 0.0)) return Matrix3::Zero();
   return mass / moments.volume * (moments.second.trace() * Matrix3::Identity() - moments.second);

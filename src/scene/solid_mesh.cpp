@@ -26,10 +26,7 @@ Vector3 corner(const TriangleMesh& mesh, const Triangle& triangle, std::size_t k
 }
 
 double extent_of(const TriangleMesh& mesh, const Triangles& triangles) {
-  Eigen::AlignedBox3d box;
-  for (const Triangle& t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) box.extend(corner(mesh, t, k));
-  return triangles.empty() ? 0.0 : box.sizes().maxCoeff();
+  return triangles.empty() ? 0.0 : box_around(mesh, triangles).sizes().maxCoeff();
 }
 
 double volume_of(const TriangleMesh& mesh, const Triangles& triangles) {
@@ -97,10 +94,9 @@ void weld(TriangleMesh& mesh, double distance) {
     same[v] = first_near(mesh.vertices[v], v);
     if (same[v] == v) cells[cell_of(mesh.vertices[v])].push_back(v);
   }
-  const auto vanishes = [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
   for (Triangle& triangle : mesh.triangles)
     for (int& v : triangle) v = same[v];
-  mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), vanishes),
+  mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), is_degenerate),
                        mesh.triangles.end());
 }
 
@@ -314,7 +310,8 @@ void put(std::vector<Triangles> parts, TriangleMesh& mesh) {
     for (const Triangles& cavity : solid.cavities)
       mesh.triangles.insert(mesh.triangles.end(), cavity.begin(), cavity.end());
   }
-  if (mesh.parts.size() < 2 || !overlaps_itself(mesh)) mesh.parts.clear();
+  const bool overlap = mesh.parts.size() > 1 && shared_moments(mesh, signed_volume(mesh)).volume > 0.0;
+  if (!overlap) mesh.parts.clear();
 }
 
 bool are_solid(const TriangleMesh& mesh, const std::vector<Triangles>& parts) {
@@ -351,12 +348,9 @@ std::vector<std::string> put_with_hull(std::vector<Triangles> parts, TriangleMes
   if (left_out) assumed.push_back("has flat sheets, which are left out");
   if (filled) assumed.push_back("is not closed: triangles that it lacks are added");
   if (!open.empty()) {
-    const TriangleMesh hull = convex_hull(cut_out(mesh, open));
-    const int first = static_cast<int>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), hull.vertices.begin(), hull.vertices.end());
-    solids.emplace_back();
-    for (const Triangle& t : hull.triangles)
-      solids.back().push_back({{t[0] + first, t[1] + first, t[2] + first}});
+    const auto first = static_cast<std::ptrdiff_t>(mesh.triangles.size());
+    append(convex_hull(cut_out(mesh, open)), Pose{}, mesh);
+    solids.emplace_back(mesh.triangles.begin() + first, mesh.triangles.end());
     assumed.push_back("is not closed: its convex hull is taken");
   }
   put(solids, mesh);
@@ -388,15 +382,13 @@ double signed_volume(const TriangleMesh& mesh) {
 
 std::vector<std::string> make_solid(TriangleMesh& mesh) {
   mesh.parts.clear();
-  if (is_solid(mesh, mesh.triangles)) {
-    std::vector<Triangles> parts = parts_of(mesh.triangles);
-    if (parts.size() == 1) {
-      if (signed_volume(mesh) < 0.0)
-        for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-      return {};
-    }
-    if (are_solid(mesh, parts)) return put(parts, mesh), std::vector<std::string>{};
-  }
+  const auto put_if_solid = [&](const TriangleMesh& given, const std::vector<Triangles>& parts) {
+    if (!are_solid(given, parts)) return false;
+    mesh.vertices = given.vertices;
+    put(parts, mesh);
+    return true;
+  };
+  if (is_solid(mesh, mesh.triangles) && put_if_solid(mesh, parts_of(mesh.triangles))) return {};
   const double extent = extent_of(mesh, mesh.triangles);
   if (!(extent > 0.0)) throw NoVolume(kNoVolume);
   TriangleMesh best = mesh;
@@ -404,26 +396,16 @@ std::vector<std::string> make_solid(TriangleMesh& mesh) {
     TriangleMesh welded = mesh;
     weld(welded, seam * extent);
     const std::vector<Triangles> as_they_are = parts_of(welded.triangles);
-    if (are_solid(welded, as_they_are) && is_closed(welded.triangles)) {
-      mesh = welded;
-      return put(as_they_are, mesh), std::vector<std::string>{};
-    }
+    if (is_closed(welded.triangles) && put_if_solid(welded, as_they_are)) return {};
     welded.triangles = without_doubled(welded.triangles);
-    std::vector<Triangles> parts = parts_of(welded.triangles);
-    if (!are_solid(welded, parts)) {
-      const Triangles joined = without_doubled_patches(as_they_are, true);  // joins solids that share faces
-      const bool whole = vertices_of(joined) == vertices_of(welded.triangles);
-      if (whole && are_solid(welded, parts_of(joined))) {
-        parts = parts_of(joined);
-      } else {
-        welded.triangles = without_doubled_patches(parts, false);
-        parts = parts_of(welded.triangles);
-      }
-    }
+    const std::vector<Triangles> parts = parts_of(welded.triangles);
+    if (put_if_solid(welded, parts)) return {};
+    const Triangles joined = without_doubled_patches(as_they_are, true);  // joins solids that share faces
+    const bool whole = vertices_of(joined) == vertices_of(welded.triangles);
+    if (whole && put_if_solid(welded, parts_of(joined))) return {};
+    welded.triangles = without_doubled_patches(parts, false);
+    if (put_if_solid(welded, parts_of(welded.triangles))) return {};
     if (seam == kSeams[0]) best = welded;
-    if (!are_solid(welded, parts)) continue;
-    mesh = welded;
-    return put(parts, mesh), std::vector<std::string>{};
   }
   mesh = best;
   mesh.triangles = divided_at_border(mesh, mesh.triangles, kSeams[2] * extent);
@@ -437,20 +419,19 @@ std::vector<std::string> make_solid(TriangleMesh& mesh) {
 }
 
 std::vector<PlacedShape> with_meshes_joined(const std::vector<PlacedShape>& shapes) {
-  const auto is_mesh = [](const PlacedShape& placed) { return std::holds_alternative<Mesh>(placed.shape); };
-  if (std::count_if(shapes.begin(), shapes.end(), is_mesh) < 2) return shapes;
+  if (std::count_if(shapes.begin(), shapes.end(), mesh_of) < 2) return shapes;
   std::vector<PlacedShape> joined;
   auto all = std::make_shared<TriangleMesh>();
   for (const PlacedShape& placed : shapes) {
-    if (!is_mesh(placed)) {
+    const TriangleMesh* const mesh = mesh_of(placed);
+    if (mesh == nullptr) {
       joined.push_back(placed);
       continue;
     }
-    const TriangleMesh& mesh = *std::get<Mesh>(placed.shape).triangles;
     const int first = static_cast<int>(all->triangles.size());
-    for (const int part : mesh.parts.empty() ? std::vector<int>{0} : mesh.parts)
+    for (const int part : mesh->parts.empty() ? std::vector<int>{0} : mesh->parts)
       all->parts.push_back(first + part);
-    append(mesh, placed.pose, *all);
+    append(*mesh, placed.pose, *all);
   }
   joined.push_back({Mesh{all, "", Vector3::Ones()}, Pose{}});
   return joined;

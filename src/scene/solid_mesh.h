@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -9,20 +10,36 @@
 
 namespace mrhi {
 
+/// What is made of a file: its surface as it is, a solid by make_solid(), or that of the convex hull.
+enum class MeshUse { surface, solid, hull };
+
 struct MeshFile {
   std::string file;
   Vector3 scale;
+  MeshUse use = MeshUse::surface;
+};
+
+/// The limits of a scene's meshes together; load_meshes() subtracts what it uses.
+struct MeshBudget {
+  std::size_t triangles = 1'000'000;
+  double seconds = 40.0;  ///< of real time; 20 s for each child process
 };
 
 /// All triangles of a file, with coincident vertices joined; or the reason why it cannot be used.
 struct LoadedMesh {
   TriangleMesh mesh;
-  std::string problem;  ///< continues a message after the file's name; empty: none
+  std::string problem;                 ///< continues a message after the file's name; empty: none
+  std::vector<std::string> files;      ///< other files that it was read from, relative to its folder
+  std::vector<std::string> assumed{};  ///< by make_solid()
+  bool is_flat = false;                ///< the problem is that of NoVolume
 };
 
 /// Reads the formats that assimp reads: STL, OBJ, DAE, PLY, glTF. Applies a DAE's unit, but not its up axis
-/// (as in rviz). A child process reads all files, with limits on sizes, time, memory and triangles.
-std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files);
+/// (as in rviz). Files that a mesh names are read in or below its folder only. A child process reads all
+/// files and makes the solids, with limits on sizes, time, memory and triangles. Throws std::runtime_error
+/// once `is_cancelled`.
+std::vector<LoadedMesh> load_meshes(const std::vector<MeshFile>& files, MeshBudget& budget,
+                                    const std::function<bool()>& is_cancelled = {});
 
 /// Error of a mesh that is flat or empty. what() continues a message after the mesh's name.
 class NoVolume : public std::runtime_error {
@@ -42,6 +59,12 @@ double signed_volume(const TriangleMesh& mesh);
 
 /// The convex hull of a mesh's vertices, by qhull. Throws NoVolume.
 TriangleMesh convex_hull(const TriangleMesh& mesh);
+
+/// The shape's triangles; null if it is no mesh.
+inline const TriangleMesh* mesh_of(const PlacedShape& placed) {
+  const Mesh* const mesh = std::get_if<Mesh>(&placed.shape);
+  return mesh == nullptr ? nullptr : mesh->triangles.get();
+}
 
 /// Joins all meshes into one, with a part for each, so that there is one tree to search.
 std::vector<PlacedShape> with_meshes_joined(const std::vector<PlacedShape>& shapes);
@@ -67,14 +90,19 @@ TriangleMesh cut_out(const TriangleMesh& mesh, const std::vector<std::array<int,
 /// Adds a mesh at a pose in the frame of `all`, without its `parts`.
 void append(const TriangleMesh& mesh, const Pose& pose, TriangleMesh& all);
 
-/// Bounding box of a mesh in its frame, and of a shape in the frame of its pose [m].
-Eigen::AlignedBox3d box_around(const TriangleMesh& mesh);
+/// True for a triangle that is a point or a line.
+inline bool is_degenerate(const std::array<int, 3>& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/// Bounding box of triangles or a whole mesh in its frame, and of a shape in the frame of its pose [m].
+Eigen::AlignedBox3d box_around(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& triangles);
+inline Eigen::AlignedBox3d box_around(const TriangleMesh& mesh) {
+  return box_around(mesh, mesh.triangles);
+}
 Eigen::AlignedBox3d box_around(const PlacedShape& shape);
 
 /// A shape's surface in the frame of its pose: a mesh as it is, a round shape as facets inside it.
 TriangleMesh surface_of(const PlacedShape& shape);
-
-/// True if closed parts of the mesh overlap.
-bool overlaps_itself(const TriangleMesh& mesh);
 
 }  // namespace mrhi

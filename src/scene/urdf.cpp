@@ -5,10 +5,8 @@
 #include <cstdint>
 #include <mutex>
 
-#include "../text/text.h"
 #include "../text/untrusted_input.h"
 #include "limits.h"
-#include "mr_hand_interaction/scene/scene_loader.h"
 #include "shape_kinds.h"
 
 namespace mrhi {
@@ -40,14 +38,18 @@ class Complaints : public console_bridge::OutputHandler {
   std::string text_;
 };
 
+/// Appends a character as UTF-8.
+void append_utf8(std::uint32_t code, std::string& utf8) {
+  const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;  // continuation bytes
+  constexpr std::uint32_t kFirst[] = {0, 0xC0, 0xE0, 0xF0};
+  utf8 += static_cast<char>(kFirst[more] | code >> 6 * more);
+  for (int i = more - 1; i >= 0; --i) utf8 += static_cast<char>(0x80 | (code >> 6 * i & 0x3F));
+}
+
 /// UTF-8 from ISO-8859-1, in which each byte is the character's code point.
 std::string from_latin1(const std::string& text) {
   std::string utf8;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x80) utf8 += static_cast<char>(0xC0 | (byte >> 6));
-    utf8 += static_cast<char>(byte < 0x80 ? byte : 0x80 | (byte & 0x3F));
-  }
+  for (const char c : text) append_utf8(static_cast<unsigned char>(c), utf8);
   return utf8;
 }
 
@@ -65,10 +67,7 @@ std::optional<std::string> from_utf16(const std::string& text) {
     std::uint32_t code = unit(at);
     if (code >= 0xD800 && code < 0xDC00 && at + 3 < text.size())
       code = 0x10000 + ((code & 0x3FF) << 10 | (unit(at += 2) & 0x3FF));
-    const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;  // continuation bytes
-    constexpr std::uint32_t kFirst[] = {0, 0xC0, 0xE0, 0xF0};
-    utf8 += static_cast<char>(kFirst[more] | code >> 6 * more);
-    for (int i = more - 1; i >= 0; --i) utf8 += static_cast<char>(0x80 | (code >> 6 * i & 0x3F));
+    append_utf8(code, utf8);
   }
   return utf8;
 }
@@ -92,61 +91,53 @@ urdf::ModelInterfaceSharedPtr parsed(const std::string& xml) {
   return model;
 }
 
-class Tree {
- public:
-  Tree(const std::string& file, const UrdfDocument& document)
-      : file_(file), model_(*document.model), root_(*model_.getRoot()) {
-    for (const auto& entry : model_.joints_) check_joint(*entry.second);
-  }
-
-  bool is_fixed(const urdf::Link& link) const {
-    return &link != &root_ && link.parent_joint->type == urdf::Joint::FIXED;
-  }
-  /// The first link to which fixed joints connect this one, or the root, and the pose relative to it.
-  LinkPart held_to(const urdf::LinkConstSharedPtr& link) const {
-    LinkPart at{link, Pose{}};
-    while (is_fixed(*at.link)) step_up(at);
-    return at;
-  }
-  Pose in_world(const urdf::LinkConstSharedPtr& link) const {
-    LinkPart at{link, Pose{}};
-    while (at.link.get() != &root_) step_up(at);
-    return at.pose;
-  }
-
- private:
-  void step_up(LinkPart& at) const {
-    at.pose = to_pose(at.link->parent_joint->parent_to_joint_origin_transform) * at.pose;
-    at.link = model_.getLink(at.link->parent_joint->parent_link_name);
-  }
-
-  void check_joint(const urdf::Joint& joint) const {
-    const std::string what = file_ + ": joint '" + text::one_line(joint.name, 60) + "' ";
-    const bool known = joint.type == urdf::Joint::FIXED || joint.type == urdf::Joint::FLOATING;
-    if (!known && !moves(joint))  // urdfdom refuses all other types
-      throw SceneError(what +
-                       "is planar; allowed: floating (a free body), fixed (a fixture, or a part of the body "
+void check_joints(const std::string& file, const urdf::ModelInterface& model) {
+  for (const auto& [name, joint] : model.joints_)
+    if (joint->type == urdf::Joint::PLANAR)
+      throw SceneError(file + ": joint " + text::quoted(name) +
+                       " is planar; allowed: floating (a free body), fixed (a fixture, or a part of the body "
                        "that it is on), revolute, continuous, prismatic");
-  }
-
-  const std::string& file_;
-  const urdf::ModelInterface& model_;
-  const urdf::Link& root_;
-};
-
-/// True if all given masses are 0: other simulators mark fixtures so.
-bool is_weightless(const PlacedLink& placed) {
-  const auto given = [](const urdf::Link& link) { return link.inertial != nullptr; };
-  const auto none = [](const urdf::Link& link) { return !link.inertial || link.inertial->mass == 0.0; };
-  const auto& merged = placed.merged;
-  return none(*placed.link) &&
-         std::all_of(merged.begin(), merged.end(), [&](const LinkPart& part) { return none(*part.link); }) &&
-         (given(*placed.link) ||
-          std::any_of(merged.begin(), merged.end(), [&](const LinkPart& part) { return given(*part.link); }));
 }
 
-bool has_shape(const urdf::Link& link) {
-  return !link.collision_array.empty() || !link.visual_array.empty();
+/// A link's place in the tree with all joints at 0.
+struct LinkPlace {
+  urdf::LinkConstSharedPtr first;  ///< of the links that fixed joints connect to it, or the root
+  Pose in_first, in_world;
+};
+using LinkPlaces = std::map<urdf::LinkConstSharedPtr, LinkPlace>;
+
+bool is_fixed(const urdf::Link& link) {
+  return link.parent_joint->type == urdf::Joint::FIXED;
+}
+
+/// The places of all links, in one pass from the root.
+LinkPlaces places_in(const urdf::ModelInterface& model) {
+  LinkPlaces places{{model.getRoot(), {model.getRoot(), Pose{}, Pose{}}}};
+  std::vector<urdf::LinkConstSharedPtr> open{model.getRoot()};
+  while (!open.empty()) {
+    const LinkPlace above = places.at(open.back());
+    const std::vector<urdf::LinkSharedPtr> children = open.back()->child_links;
+    open.pop_back();
+    for (const urdf::LinkSharedPtr& link : children) {
+      const Pose origin = to_pose(link->parent_joint->parent_to_joint_origin_transform);
+      const Pose in_world = above.in_world * origin;
+      places[link] = is_fixed(*link) ? LinkPlace{above.first, above.in_first * origin, in_world}
+                                     : LinkPlace{link, Pose{}, in_world};
+      open.push_back(link);
+    }
+  }
+  return places;
+}
+
+/// True if all given masses are 0: other simulators mark fixtures so.
+bool is_weightless(const LinkedBody& body) {
+  bool is_given = false;
+  for (const LinkPart& part : body.parts) {
+    if (!part.link->inertial) continue;
+    if (part.link->inertial->mass != 0.0) return false;
+    is_given = true;
+  }
+  return is_given;
 }
 
 void read_limits(const urdf::Joint& given, Joint& joint) {
@@ -157,25 +148,25 @@ void read_limits(const urdf::Joint& given, Joint& joint) {
   joint.start = std::min(std::max(0.0, joint.lower), joint.upper);
 }
 
+/// Indices of bodies by the names of their first links.
+using BodyIndices = std::map<std::string, int>;
+
 /// Sets the parent: the nearest body above. Links without geometry on fixed joints are no bodies.
-void set_parent(const UrdfDocument& document, const Scene& scene, const urdf::Joint& given, Joint& joint) {
+void set_parent(const UrdfDocument& document, const Scene& scene, const BodyIndices& bodies,
+                const urdf::Joint& given, Joint& joint) {
+  const urdf::ModelInterface& model = *document.model;
+  urdf::LinkConstSharedPtr link = model.getLink(given.parent_link_name);
   joint.in_parent = to_pose(given.parent_to_joint_origin_transform);
-  urdf::LinkConstSharedPtr link = document.model->getLink(given.parent_link_name);
-  while (link != document.model->getRoot()) {
-    const std::optional<int> body = find_body(scene, link->name);
-    if (body) {
-      joint.parent = *body;
-      joint.in_parent = scene.bodies[*body].link_in_body * joint.in_parent;
-      return;
-    }
+  for (; link != model.getRoot() && bodies.count(link->name) == 0; link = link->getParent())
     joint.in_parent = to_pose(link->parent_joint->parent_to_joint_origin_transform) * joint.in_parent;
-    link = document.model->getLink(link->parent_joint->parent_link_name);
-  }
+  if (link == model.getRoot()) return;
+  joint.parent = bodies.at(link->name);
+  joint.in_parent = scene.bodies[joint.parent].link_in_body * joint.in_parent;
 }
 
 Joint read_joint(const std::string& file, const UrdfDocument& document, const Scene& scene,
-                 const urdf::Joint& given) {
-  const std::string what = file + ": joint '" + text::one_line(given.name, 60) + "': ";
+                 const BodyIndices& bodies, const urdf::Joint& given) {
+  const std::string what = file + ": joint " + text::quoted(given.name) + ": ";
   if (!is_name(given.name)) throw SceneError(what + "this name is not allowed; allowed: " + kNameIs);
   Joint joint;
   joint.name = given.name;
@@ -186,10 +177,10 @@ Joint read_joint(const std::string& file, const UrdfDocument& document, const Sc
     throw SceneError(what + "axis " + text::vector(axis) + "; allowed: a direction, its length " +
                      length.describe());
   joint.axis = axis.normalized();
-  joint.child = *find_body(scene, given.child_link_name);
+  joint.child = bodies.at(given.child_link_name);
   joint.in_child = scene.bodies[joint.child].link_in_body;
   read_limits(given, joint);
-  set_parent(document, scene, given, joint);
+  set_parent(document, scene, bodies, given, joint);
   if (given.dynamics) {
     joint.damping = given.dynamics->damping;
     joint.friction = given.dynamics->friction;
@@ -215,14 +206,16 @@ UrdfDocument parse_urdf(const std::string& source, const std::string& given) {
   return document;
 }
 
-bool has_shape(const PlacedLink& placed) {
-  return has_shape(*placed.link) || std::any_of(placed.merged.begin(), placed.merged.end(),
-                                                [](const LinkPart& part) { return has_shape(*part.link); });
+bool LinkedBody::has_shape() const {
+  return std::any_of(parts.begin(), parts.end(), [](const LinkPart& part) {
+    return !part.link->collision_array.empty() || !part.link->visual_array.empty();
+  });
 }
 
-bool moves(const urdf::Joint& joint) {
-  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
-         joint.type == urdf::Joint::PRISMATIC;
+bool moves(const urdf::Link& link) {
+  if (!link.parent_joint) return false;
+  const int type = link.parent_joint->type;
+  return type == urdf::Joint::REVOLUTE || type == urdf::Joint::CONTINUOUS || type == urdf::Joint::PRISMATIC;
 }
 
 Pose to_pose(const urdf::Pose& pose) {
@@ -230,37 +223,41 @@ Pose to_pose(const urdf::Pose& pose) {
   return {{pose.position.x, pose.position.y, pose.position.z}, Quaternion(q.w, q.x, q.y, q.z).normalized()};
 }
 
-std::vector<PlacedLink> place_links(const std::string& urdf_file, UrdfDocument& document) {
-  const Tree tree(urdf_file, document);
-  const urdf::LinkConstSharedPtr root = document.model->getRoot();
-  std::vector<PlacedLink> placed;
-  std::map<const urdf::Link*, std::size_t> bodies;
+std::vector<LinkedBody> linked_bodies(const std::string& urdf_file, UrdfDocument& document) {
+  const urdf::ModelInterface& model = *document.model;
+  check_joints(urdf_file, model);
+  const urdf::LinkConstSharedPtr root = model.getRoot();
+  const LinkPlaces places = places_in(model);
+  std::vector<LinkedBody> bodies;
+  std::map<urdf::LinkConstSharedPtr, std::size_t> body_of;
   for (const urdf::LinkConstSharedPtr& link : document.links) {
-    const bool fixture = link != root && tree.held_to(link).link == root;
-    if (link == root || (tree.is_fixed(*link) && !fixture)) continue;
-    bodies[link.get()] = placed.size();
-    placed.push_back({link, fixture, tree.in_world(link), {}});
+    const LinkPlace& place = places.at(link);
+    const bool fixture = place.first == root;
+    if (link == root || (!fixture && place.first != link)) continue;
+    body_of[link] = bodies.size();
+    bodies.push_back({{{link, Pose{}}}, fixture, place.in_world});
   }
   for (const urdf::LinkConstSharedPtr& link : document.links) {
-    const LinkPart held = tree.held_to(link);
-    if (held.link == root || held.link == link) continue;
-    placed[bodies.at(held.link.get())].merged.push_back({link, held.pose});
+    const LinkPlace& place = places.at(link);
+    if (place.first != root && place.first != link)
+      bodies[body_of.at(place.first)].parts.push_back({link, place.in_first});
   }
-  for (PlacedLink& body : placed) {
-    if (body.fixed || moves(*body.link->parent_joint) || !is_weightless(body)) continue;
+  for (LinkedBody& body : bodies) {
+    if (body.fixed || moves(body.link()) || !is_weightless(body)) continue;
     body.fixed = true;
     document.warnings.add("links of mass 0 are fixtures; a mass, or no <inertial>, makes them move",
-                          "'" + body.link->name + "'");
+                          "'" + body.link().name + "'");
   }
-  return placed;
+  return bodies;
 }
 
 std::vector<Joint> read_joints(const std::string& urdf_file, const UrdfDocument& document,
                                const Scene& scene) {
+  BodyIndices bodies;
+  for (const Body& body : scene.bodies) bodies.emplace(body.name, static_cast<int>(bodies.size()));
   std::vector<Joint> joints;
   for (const urdf::LinkConstSharedPtr& link : document.links) {
-    if (link->parent_joint && moves(*link->parent_joint))
-      joints.push_back(read_joint(urdf_file, document, scene, *link->parent_joint));
+    if (moves(*link)) joints.push_back(read_joint(urdf_file, document, scene, bodies, *link->parent_joint));
   }
   return joints;
 }

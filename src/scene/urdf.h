@@ -76,8 +76,8 @@ Pose to_pose(const urdf::Pose& pose);
 /// Throws SceneError that begins with `element` for a component of a colour outside 0 to 1.
 void check_color(const std::string& element, const std::array<float, 4>& rgba);
 
-/// True if the joint is revolute, continuous or prismatic.
-bool moves(const urdf::Joint& joint);
+/// True if the link is on a joint that is revolute, continuous or prismatic. A requested link has no joint.
+bool moves(const urdf::Link& link);
 
 /// A link that is a part of a body, and its pose in the frame of the body's first link.
 struct LinkPart {
@@ -85,20 +85,20 @@ struct LinkPart {
   Pose pose;
 };
 
-/// A body: a link below the root, and those that fixed joints connect to it.
-struct PlacedLink {
-  urdf::LinkConstSharedPtr link;
-  bool fixed;     ///< connected to the root by fixed joints only, or of mass 0
-  Pose in_world;  ///< pose of the link's frame with all joints at 0; the root is the world
-  std::vector<LinkPart>
-      merged;  ///< other links of the body; empty for a fixture, each of whose links is a fixture
-};
+/// A body: a link below the root, and those that fixed joints connect to it. Each link of a fixture is a
+/// body.
+struct LinkedBody {
+  std::vector<LinkPart> parts;  ///< at least one
+  bool fixed;                   ///< connected to the root by fixed joints only, or of mass 0
+  Pose in_world;  ///< pose of the first link's frame with all joints at 0; the root is the world
 
-bool has_shape(const PlacedLink& placed);
+  const urdf::Link& link() const { return *parts.front().link; }
+  bool has_shape() const;
+};
 
 /// All bodies, in the order of their first links in the URDF. Throws SceneError for joints of a kind that a
 /// scene cannot have.
-std::vector<PlacedLink> place_links(const std::string& urdf_file, UrdfDocument& document);
+std::vector<LinkedBody> linked_bodies(const std::string& urdf_file, UrdfDocument& document);
 
 /// The moving joints of a URDF between the bodies of the scene, in the order of their links. They start at 0,
 /// or at the limit nearest to it. Throws SceneError.
@@ -112,8 +112,8 @@ class ShapeReader {
   ShapeReader(std::string source, std::string folder, const SceneOptions& options, Warnings& warnings)
       : source_(std::move(source)), folder_(std::move(folder)), options_(options), warnings_(warnings) {}
 
-  /// Reads the mesh files of all these links together, which is faster than one by one.
-  void prepare(const std::vector<urdf::LinkConstSharedPtr>& links);
+  /// Reads the mesh files of all these bodies together, which is faster than one by one.
+  void prepare(const std::vector<LinkedBody>& bodies);
 
   /// `element` names the place in messages. With `solid`, the mesh is closed or becomes its hull. Returns
   /// nothing for a flat sheet. Throws SceneError.
@@ -128,8 +128,8 @@ class ShapeReader {
   std::string find_file(const std::string& uri) const;
   std::string find_path(const std::string& uri) const;
   std::optional<Shape> read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid);
-  std::shared_ptr<const TriangleMesh> solid_of(const Named& mesh, const std::string& element);
-  const TriangleMesh& triangles_of(const Named& mesh);
+  std::vector<LoadedMesh> load(const std::vector<MeshFile>& files);
+  std::shared_ptr<const TriangleMesh> triangles_of(const Named& mesh, bool solid, const std::string& element);
   std::optional<Shape> make(const std::string& kind, const std::vector<double>& size,
                             const std::string& element);
   [[noreturn]] void fail(const std::string& element, const std::string& what) const;
@@ -137,7 +137,8 @@ class ShapeReader {
   const std::string source_, folder_;
   const SceneOptions& options_;
   Warnings& warnings_;
-  std::map<std::string, LoadedMesh> loaded_;                           // by file and scale
+  MeshBudget budget_;
+  std::map<std::string, LoadedMesh> loaded_;                           // by file, scale and use
   std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;  // the same, as shapes use them
   std::vector<SceneFile> files_;
 };
@@ -150,10 +151,10 @@ void read_urdf(const std::string& source, const std::string& folder, const std::
 
 /// Adds one body of a URDF to the scene, likewise.
 void read_body(const std::string& source, const std::string& folder, UrdfDocument& document,
-               const PlacedLink& placed, const SceneOptions& options, Scene& scene);
+               const LinkedBody& linked, const SceneOptions& options, Scene& scene);
 
 /// The only body of a URDF that has a shape. Throws SceneError if there are none or several.
-PlacedLink only_body(const std::string& source, UrdfDocument& document);
+LinkedBody only_body(const std::string& source, UrdfDocument& document);
 
 /// Calls arrange_joints(), but throws SceneError.
 void join_bodies(const std::string& source, Scene& scene);

@@ -80,20 +80,6 @@ std::optional<GivenShape> from_filename(const std::string& filename) {
   return given;
 }
 
-void check_extent(const Vector3& extent, double part, const char* where) {
-  if (body_limits::kSize.contains(part)) return;
-  throw std::runtime_error("measures " + text::vector(extent) +
-                           " m; allowed: " + body_limits::kSize.describe() + " m " + where +
-                           (part > 1.0 ? "; scale=\"0.001 0.001 0.001\" makes metres of millimetres" : ""));
-}
-
-/// Checks all sizes of a collision mesh, like a box's. A visual mesh may be flat.
-void check_sizes(const TriangleMesh& mesh, bool solid) {
-  const Vector3 extent = box_around(mesh).sizes();
-  check_extent(extent, extent.maxCoeff(), "along the longest axis");
-  if (solid) check_extent(extent, extent.minCoeff(), "along each axis");
-}
-
 /// Decodes percent-encoding.
 std::string decoded(const std::string& uri) {
   std::string text;
@@ -129,11 +115,6 @@ std::string find_above(const fs::path& folder, const std::string& in_package) {
   return "";
 }
 
-std::string in_lower_case(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-  return name;
-}
-
 /// A file below a folder whose path differs from `path` in case only; empty if there is none.
 std::string find_ignoring_case(fs::path folder, const std::string& path) {
   for (const fs::path& part : fs::path(path).relative_path()) {
@@ -145,7 +126,7 @@ std::string find_ignoring_case(fs::path folder, const std::string& path) {
     std::string found;  // the alphabetically first
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
       const std::string name = entry.path().filename().string();
-      if (in_lower_case(name) == in_lower_case(part.string()) && (found.empty() || name < found))
+      if (text::in_lower_case(name) == text::in_lower_case(part.string()) && (found.empty() || name < found))
         found = name;
     }
     if (found.empty()) return "";
@@ -199,7 +180,10 @@ struct ShapeReader::Named {
   std::string uri, file;  ///< file: empty if it is not found
   Vector3 scale;
   bool hull;
-  std::string key() const { return file + " " + text::vector(scale); }
+  MeshUse use(bool solid) const { return !solid ? MeshUse::surface : hull ? MeshUse::hull : MeshUse::solid; }
+  std::string key(MeshUse use) const {
+    return file + " " + text::vector(scale) + " " + std::to_string(static_cast<int>(use));
+  }
 };
 
 ShapeReader::Named ShapeReader::named(const urdf::Mesh& mesh) const {
@@ -218,8 +202,7 @@ std::string ShapeReader::find_file(const std::string& uri) const {
   if (file.empty()) path = decoded(path), file = find_path(path);
   if (!file.empty()) return file;
   file = find_ignoring_case(folder_, path);
-  if (!file.empty())
-    warnings_.add("files are found by names in another case", "'" + text::one_line(uri, 200) + "'");
+  if (!file.empty()) warnings_.add("files are found by names in another case", text::quoted(uri, 200));
   return file;
 }
 
@@ -234,24 +217,38 @@ std::string ShapeReader::find_path(const std::string& uri) const {
   return is_file(fs::path(folder_) / path) ? (fs::path(folder_) / path).string() : "";
 }
 
-void ShapeReader::prepare(const std::vector<urdf::LinkConstSharedPtr>& links) {
+void ShapeReader::prepare(const std::vector<LinkedBody>& bodies) {
   std::vector<MeshFile> wanted;
   std::vector<std::string> keys;
-  const auto want = [&](const urdf::GeometrySharedPtr& geometry) {
+  const auto want = [&](const urdf::GeometrySharedPtr& geometry, bool solid) {
     if (!geometry || geometry->type != urdf::Geometry::MESH) return;
     const auto& mesh = static_cast<const urdf::Mesh&>(*geometry);
     if (from_filename(mesh.filename)) return;
     const Named name = named(mesh);
-    if (name.file.empty() || !loaded_.emplace(name.key(), LoadedMesh{}).second) return;
-    wanted.push_back({name.file, name.scale});
-    keys.push_back(name.key());
+    const MeshUse use = name.use(solid);
+    if (name.file.empty() || !loaded_.emplace(name.key(use), LoadedMesh{}).second) return;
+    wanted.push_back({name.file, name.scale, use});
+    keys.push_back(name.key(use));
   };
-  for (const urdf::LinkConstSharedPtr& link : links) {
-    for (const auto& collision : link->collision_array) want(collision->geometry);
-    for (const auto& visual : link->visual_array) want(visual->geometry);
+  for (const LinkedBody& body : bodies) {
+    const bool collides = std::any_of(body.parts.begin(), body.parts.end(), [](const LinkPart& part) {
+      return !part.link->collision_array.empty();
+    });
+    for (const LinkPart& part : body.parts) {
+      for (const auto& collision : part.link->collision_array) want(collision->geometry, true);
+      for (const auto& visual : part.link->visual_array) {
+        want(visual->geometry, false);
+        if (!body.fixed && !collides) want(visual->geometry, true);
+      }
+    }
   }
-  std::vector<LoadedMesh> meshes = load_meshes(wanted);
+  std::vector<LoadedMesh> meshes = load(wanted);
   for (std::size_t i = 0; i < meshes.size(); ++i) loaded_[keys[i]] = std::move(meshes[i]);
+}
+
+std::vector<LoadedMesh> ShapeReader::load(const std::vector<MeshFile>& files) {
+  return rethrown<SceneError, std::runtime_error>(
+      source_ + ": ", [&] { return load_meshes(files, budget_, options_.is_cancelled); });
 }
 
 std::optional<Shape> ShapeReader::read(const urdf::Geometry& geometry, const std::string& element,
@@ -294,7 +291,7 @@ std::optional<Shape> ShapeReader::make(const std::string& name, const std::vecto
 /// A visual mesh may be missing: the collision shape is then drawn instead.
 std::optional<Shape> ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::string& element, bool solid) {
   const Named name = named(mesh);
-  const std::string what = "mesh '" + text::one_line(name.uri, 200) + "' ";
+  const std::string what = "mesh " + text::quoted(name.uri, 200) + " ";
   if (!name.scale.allFinite() || (name.scale.array() == 0).any())
     fail(element, "mesh scale " + text::vector(name.scale) +
                       " is not allowed; allowed: three numbers, none of them 0");
@@ -305,11 +302,7 @@ std::optional<Shape> ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::s
                                      "that is a folder above the URDF"
                                    : "not found in '" + folder_ +
                                          "'; allowed: package://, file://, or a path from the URDF's folder");
-    const TriangleMesh& triangles = triangles_of(name);
-    check_sizes(triangles, false);
-    const std::string key = name.key() + (name.hull ? " hull" : solid ? " solid" : "");
-    auto& used = meshes_[key];
-    if (!used) used = solid ? solid_of(name, element) : std::make_shared<const TriangleMesh>(triangles);
+    const auto used = triangles_of(name, solid, element);
     const bool is_uri = name.uri.find("://") != std::string::npos;
     return Mesh{used,
                 is_uri && !begins_with(name.uri, "model")
@@ -325,20 +318,27 @@ std::optional<Shape> ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::s
   return std::nullopt;
 }
 
-std::shared_ptr<const TriangleMesh> ShapeReader::solid_of(const Named& mesh, const std::string& element) {
-  TriangleMesh triangles = triangles_of(mesh);
-  if (mesh.hull) triangles = convex_hull(triangles);
-  for (const std::string& assumed : make_solid(triangles))
-    warnings_.add("a mesh " + assumed, element + " '" + text::one_line(mesh.uri, 100) + "'");
-  check_sizes(triangles, true);
-  return std::make_shared<const TriangleMesh>(std::move(triangles));
-}
-
-const TriangleMesh& ShapeReader::triangles_of(const Named& mesh) {
-  const LoadedMesh& found = loaded_.at(mesh.key());  // by prepare()
-  if (!found.problem.empty()) throw std::runtime_error(found.problem);
-  if (text::find_named(files_, mesh.uri) == nullptr) files_.push_back({mesh.uri, mesh.file});
-  return found.mesh;
+std::shared_ptr<const TriangleMesh> ShapeReader::triangles_of(const Named& mesh, bool solid,
+                                                              const std::string& element) {
+  const MeshUse use = mesh.use(solid);
+  const auto [found, is_new] = loaded_.emplace(mesh.key(use), LoadedMesh{});
+  LoadedMesh& loaded = found->second;
+  // prepare() has not loaded a visual that takes the place of flat collisions
+  if (is_new) loaded = load({{mesh.file, mesh.scale, use}}).front();
+  if (loaded.is_flat) throw NoVolume(loaded.problem);
+  if (!loaded.problem.empty()) throw std::runtime_error(loaded.problem);
+  const auto note = [&](const std::string& name, const std::string& path) {
+    if (text::find_named(files_, name) == nullptr) files_.push_back({name, path});
+  };
+  note(mesh.uri, mesh.file);
+  for (const std::string& file : loaded.files)
+    note((fs::path(mesh.uri).parent_path() / file).string(),
+         (fs::path(mesh.file).parent_path() / file).string());
+  auto& used = meshes_[mesh.key(use)];
+  if (used) return used;
+  for (const std::string& assumed : loaded.assumed)
+    warnings_.add("a mesh " + assumed, element + " " + text::quoted(mesh.uri, 100));
+  return used = std::make_shared<const TriangleMesh>(std::move(loaded.mesh));
 }
 
 void ShapeReader::fail(const std::string& element, const std::string& what) const {

@@ -63,7 +63,7 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       sleeping(scene, configuration.contact.sleep),
       assist(scene, finder, operators, configuration),
       renderer(scene, finder) {
-  check_filter(configuration.filter.type);
+  hand_filter(configuration.filter.type);  // refuses an unknown one
   reset();
 }
 

@@ -105,9 +105,7 @@ bool CommandLine::read(const std::vector<std::string>& words) const {
 }
 
 const CommandLine::Option* CommandLine::find(const std::string& name) const {
-  const auto found = std::find_if(options_.begin(), options_.end(),
-                                  [&](const Option& option) { return option.name == name; });
-  return found == options_.end() ? nullptr : &*found;
+  return text::find_named(options_, name);
 }
 
 std::string CommandLine::names() const {

@@ -101,19 +101,15 @@ bool is_file(const std::filesystem::path& path) {
 std::string find_named_file(const std::string& kind, const std::string& name, const std::string& extension,
                             const std::vector<std::string>& directories) {
   const bool is_path = name.find('/') != std::string::npos || fs::path(name).extension() == extension;
-  const std::string allowed =
-      "; allowed: " + std::string(extension == ".urdf" ? "a URDF" : "a YAML") + " file, or one of ";
-  if (is_path) {
-    if (is_file(name)) return name;
-    throw InputError(kind + " file '" + name + "' does not exist" + allowed +
-                     text::joined(known_names(extension, directories)));
-  }
+  if (is_path && is_file(name)) return name;
   for (const std::string& directory : directories) {
     const fs::path file = fs::path(directory) / (name + extension);
-    if (is_file(file)) return file.string();
+    if (!is_path && is_file(file)) return file.string();
   }
-  throw InputError("unknown " + kind + " '" + name + "'" + allowed +
-                   text::joined(known_names(extension, directories)));
+  throw InputError(
+      (is_path ? kind + " file '" + name + "' does not exist" : "unknown " + kind + " '" + name + "'") +
+      "; allowed: " + (extension == ".urdf" ? "a URDF" : "a YAML") + " file, or one of " +
+      text::joined(known_names(extension, directories)));
 }
 
 std::string csv_cell(const std::string& text) {

@@ -3,10 +3,12 @@
 #include <locale.h>
 #include <stdlib.h>
 
+#include <cctype>
 #include <locale>
 #include <sstream>
 
 #include "mr_hand_interaction/input_error.h"
+#include "untrusted_input.h"
 
 namespace mrhi::text {
 
@@ -49,6 +51,11 @@ std::string vector(const Vector3& value) {
   return "[" + number(value.x()) + ", " + number(value.y()) + ", " + number(value.z()) + "]";
 }
 
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> fields;
   std::size_t begin = 0;
@@ -60,15 +67,33 @@ std::vector<std::string> split(const std::string& text) {
 
 std::string one_line(const std::string& text, std::size_t longest) {
   std::string line;
-  for (const char c : text) {
-    const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
-    // A terminal would read an escape sequence as a command.
-    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    if (!blank) line += control ? '?' : c;
-    if (blank && !line.empty() && line.back() != ' ') line += ' ';
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    const std::string one = text.substr(at, std::max<std::size_t>(1, length));
+    at += one.size();
+    if (one.find_first_of("\n\r\t ") == 0) {
+      if (!line.empty() && line.back() != ' ') line += ' ';
+      continue;
+    }
+    // A terminal reads control characters as commands; in UTF-8 those from 80 to 9F begin with C2.
+    const auto first = static_cast<unsigned char>(one[0]), last = static_cast<unsigned char>(one.back());
+    const bool control = first < 0x20 || first == 0x7f || (first == 0xC2 && last < 0xA0);
+    line += length == 0 || control ? "?" : one;
   }
   if (!line.empty() && line.back() == ' ') line.pop_back();
-  return line.size() <= longest ? line : line.substr(0, longest) + "...";
+  if (line.size() <= longest) return line;
+  std::size_t end = longest;
+  while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) --end;  // not within a character
+  return line.substr(0, end) + "...";
+}
+
+std::string quoted(const std::string& name, std::size_t longest) {
+  return "'" + one_line(name, longest) + "'";
+}
+
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
 }
 
 std::string with_spaces(std::string name) {

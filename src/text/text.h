@@ -51,11 +51,20 @@ auto* find_named(Items& items, std::string_view name) {
   return found == std::end(items) ? nullptr : &*found;
 }
 
+/// The words of a text, which blanks and line breaks separate.
+std::vector<std::string> words(const std::string& text);
+
 /// Splits at commas.
 std::vector<std::string> split(const std::string& text);
 
-/// Replaces line breaks by spaces and other control characters by '?'; truncates to `longest` characters.
+/// Replaces line breaks by spaces, and other control characters and bytes that are no UTF-8 by '?';
+/// truncates to `longest` bytes.
 std::string one_line(const std::string& text, std::size_t longest = 300);
+
+/// The same in quotes, for a name in a message.
+std::string quoted(const std::string& name, std::size_t longest = 60);
+
+std::string in_lower_case(std::string text);  ///< of ASCII letters
 
 /// A name for display: without underscores.
 std::string with_spaces(std::string name);

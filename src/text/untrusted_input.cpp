@@ -2,11 +2,14 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <cmath>
 #include <csignal>
 #include <exception>
 #include <fstream>
@@ -19,15 +22,6 @@ namespace {
 constexpr int kDeepest = 32;
 constexpr std::size_t kMaxElements = 100'000;
 constexpr std::size_t kMaxAttributes = 64;  // per element: libraries compare each with all before it
-
-/// Length in bytes of the UTF-8 character that begins with `lead`; 0: invalid.
-std::size_t length_of(unsigned char lead) {
-  if (lead < 0x80) return 1;
-  if (lead < 0xC2) return 0;
-  if (lead < 0xE0) return 2;
-  if (lead < 0xF0) return 3;
-  return lead < 0xF5 ? 4 : 0;
-}
 
 bool has_control_characters(const std::string& xml) {
   return std::any_of(xml.begin(), xml.end(), [](char c) {
@@ -49,22 +43,21 @@ class Tags {
       } else if (begins("<?xml")) {
         instruction();
       } else if (begins("<!")) {
-        declares_ = true;
+        declares = true;
         skip_to(">", 2);
       } else if (at_ + 1 < xml_.size() && begins_name(xml_[at_ + 1])) {
         tag();
       } else {
-        strange_ = true;
+        strange = true;
         ++at_;
       }
     }
   }
 
-  int deepest() const { return deepest_; }
-  std::size_t elements() const { return elements_; }
-  std::size_t attributes() const { return attributes_; }
-  bool declares() const { return declares_; }
-  bool strange() const { return strange_; }
+  std::size_t elements = 0, attributes = 0;  ///< of all tags, and the most of one
+  int deepest = 0;
+  bool declares = false;  ///< a document type
+  bool strange = false;   ///< a '<' that begins nothing known
 
  private:
   bool begins(const char* text) const { return xml_.compare(at_, std::string(text).size(), text) == 0; }
@@ -85,45 +78,42 @@ class Tags {
   /// place.
   void instruction() {
     skip_to(">", 5);
-    if (at_ < 2 || xml_[at_ - 2] != '?') strange_ = true;
+    if (at_ < 2 || xml_[at_ - 2] != '?') strange = true;
   }
 
   /// A '>' in quotes does not end a tag.
   void tag() {
     const bool closes = begins("</");
     char quote = 0;
-    std::size_t attributes = 0;
+    std::size_t here = 0;
     for (++at_; at_ < xml_.size() && (quote || xml_[at_] != '>'); ++at_) {
-      if (!quote && xml_[at_] == '=') ++attributes;
+      if (!quote && xml_[at_] == '=') ++here;
       if (quote ? xml_[at_] == quote : xml_[at_] == '"' || xml_[at_] == '\'') quote = quote ? 0 : xml_[at_];
     }
-    attributes_ = std::max(attributes_, attributes);
+    attributes = std::max(attributes, here);
     if (closes) {
       depth_ = std::max(0, depth_ - 1);
       return;
     }
-    ++elements_;
-    deepest_ = std::max(deepest_, depth_ + 1);
+    ++elements;
+    deepest = std::max(deepest, depth_ + 1);
     if (xml_[at_ - 1] != '/') ++depth_;
   }
 
   const std::string& xml_;
-  std::size_t at_ = 0, elements_ = 0, attributes_ = 0;
-  int depth_ = 0, deepest_ = 0;
-  bool declares_ = false, strange_ = false;
+  std::size_t at_ = 0;
+  int depth_ = 0;
 };
 
 constexpr char kDone = 'd', kFailed = 'f';
 
 // Sanitizers reserve terabytes of address space.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kMemoryIsLimited = false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kMemoryIsLimited = false;
-#else
-constexpr bool kMemoryIsLimited = true;
+#ifndef __has_feature  // clang's
+#define __has_feature(name) 0
 #endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || __has_feature(address_sanitizer) || \
+    __has_feature(thread_sanitizer)
+constexpr bool kMemoryIsLimited = false;
 #else
 constexpr bool kMemoryIsLimited = true;
 #endif
@@ -161,9 +151,10 @@ void write_all(int to, const std::string& text) {
 [[noreturn]] void be_child(int to, rlim_t memory, const ChildLimits& limits,
                            const std::function<std::string()>& work) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT}) std::signal(signal, SIG_DFL);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   be_silent();
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, static_cast<rlim_t>(limits.seconds));
+  limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)));
   if (kMemoryIsLimited) limit(RLIMIT_AS, memory);
   try {
     write_all(to, kDone + work());
@@ -175,32 +166,44 @@ void write_all(int to, const std::string& text) {
   _exit(0);
 }
 
-/// Reads until the other end is closed, or until a limit is exceeded.
-std::string read_all(int from, const ChildLimits& limits) {
-  constexpr int kMilliseconds = 1000, kPatience = 4;
+/// Reads until the other end is closed; empty if a limit is exceeded, or once it is cancelled.
+std::string read_all(int from, const ChildLimits& limits, const std::function<bool()>& is_cancelled) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kPeriod = 100;  // between two questions whether it is cancelled [ms]
+  const auto begin = Clock::now();
   std::string text;
   char part[1 << 16];
   while (text.size() <= limits.output) {
+    const std::chrono::duration<double> time = Clock::now() - begin;
+    if (time.count() > limits.seconds || (is_cancelled && is_cancelled())) return "";
     pollfd ready{from, POLLIN, 0};
-    const int count = poll(&ready, 1, kPatience * kMilliseconds * limits.seconds);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return "";
+    const int count = poll(&ready, 1, kPeriod);
+    if (count == 0 || (count < 0 && errno == EINTR)) continue;
+    if (count < 0) return "";
     const ssize_t got = read(from, part, sizeof part);
-    if (got == 0) break;
+    if (got == 0) return text;
     if (got > 0) text.append(part, static_cast<std::size_t>(got));
     if (got < 0 && errno != EINTR) return "";
   }
-  return text.size() <= limits.output ? text : "";
+  return "";
 }
 
 }  // namespace
 
+std::size_t utf8_length(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[at + i]); };
+  const unsigned char lead = byte(0);
+  const std::size_t length = lead < 0x80 ? 1 : lead < 0xC2 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+  if (lead > 0xF4 || at + length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  return length;
+}
+
 bool is_utf8(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = length_of(static_cast<unsigned char>(text[at]));
-    if (length == 0 || at + length > text.size()) return false;
-    for (std::size_t i = 1; i < length; ++i)
-      if ((static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80) return false;
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0) return false;
     at += length;
   }
   return true;
@@ -213,20 +216,21 @@ std::optional<std::string> xml_danger(const std::string& xml) {
     return "is no text; allowed: UTF-8 or ISO-8859-1 without control characters";
   Tags tags(xml);
   tags.follow();
-  if (tags.declares()) return "has a document type; allowed: none";
-  if (tags.strange())
+  if (tags.declares) return "has a document type; allowed: none";
+  if (tags.strange)
     return "has a '<' that begins nothing known; allowed: elements, comments, CDATA and <?xml ...?>";
-  if (tags.deepest() > kDeepest)
+  if (tags.deepest > kDeepest)
     return "elements are nested deeper than " + std::to_string(kDeepest) + " levels; allowed: at most that";
-  if (tags.elements() > kMaxElements)
-    return std::to_string(tags.elements()) + " elements; allowed: at most " + std::to_string(kMaxElements);
-  if (tags.attributes() > kMaxAttributes)
-    return "an element has " + std::to_string(tags.attributes()) + " attributes; allowed: at most " +
+  if (tags.elements > kMaxElements)
+    return std::to_string(tags.elements) + " elements; allowed: at most " + std::to_string(kMaxElements);
+  if (tags.attributes > kMaxAttributes)
+    return "an element has " + std::to_string(tags.attributes) + " attributes; allowed: at most " +
            std::to_string(kMaxAttributes);
   return {};
 }
 
-std::string run_in_child(const ChildLimits& limits, const std::function<std::string()>& work) {
+std::string run_in_child(const ChildLimits& limits, const std::function<std::string()>& work,
+                         const std::function<bool()>& is_cancelled) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("cannot be read: no pipe to be had");
   const rlim_t memory = size_of_this() + limits.memory;
@@ -236,13 +240,14 @@ std::string run_in_child(const ChildLimits& limits, const std::function<std::str
     be_child(ends[1], memory, limits, work);
   }
   close(ends[1]);
-  const std::string answer = child < 0 ? "" : read_all(ends[0], limits);
+  const std::string answer = child < 0 ? "" : read_all(ends[0], limits, is_cancelled);
   close(ends[0]);
   if (child > 0) {
     kill(child, SIGKILL);  // finished, or to be ended
     while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
+  if (answer.empty() && is_cancelled && is_cancelled()) throw std::runtime_error("is cancelled");
   if (answer.empty())
     throw std::runtime_error("takes more time or memory than is allowed, or cannot be read");
   if (answer[0] == kDone) return answer.substr(1);

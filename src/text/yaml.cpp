@@ -75,6 +75,8 @@ YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::si
     YAML::Parser parser(text);
     Guard guard(source);
     parser.HandleNextDocument(guard);
+    if (parser.HandleNextDocument(guard))
+      throw YamlError(source + ": has a second document, below '---'; allowed: one");
     return YAML::Load(whole);
   } catch (const YAML::Exception& error) {
     throw YamlError(yaml_complaint(source, error));

@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "../math/rotation.h"
 #include "hand_filter.h"
-#include "mr_hand_interaction/configuration.h"
 
 namespace mrhi {
 

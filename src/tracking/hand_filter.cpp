@@ -5,7 +5,6 @@
 
 #include "../text/text.h"
 #include "hand_filter_list.h"
-#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 namespace {

@@ -75,9 +75,6 @@ double filter_noise(const SeenNoise& seen);
 void track_hands(const HandFrame& frame, const Configuration& configuration, std::vector<HandTrack>& hands,
                  std::vector<Event>& events);
 
-/// Throws std::invalid_argument for a filter that is not known.
-void check_filter(FilterKind kind);
-
 /// Changes the filter at `now`. Positions and velocities stay continuous; the change takes 0.2 s.
 void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "../text/text.h"
 #include "hand_anatomy.h"
@@ -77,12 +76,6 @@ Vector3 median_point(const HandJoints& hand) {
   return centre;
 }
 
-std::size_t known_joints(const HandJoints& hand) {
-  std::size_t known = 0;
-  for (std::size_t i = 0; i < kHandJoints; ++i) known += joint(hand, i).has_value();
-  return known;
-}
-
 std::optional<double> relative_size(const std::vector<Measured>& bones) {
   std::vector<double> ratios;
   ratios.reserve(bones.size());
@@ -138,50 +131,30 @@ JointOrder finger_by_finger(const char* name, std::size_t size, std::size_t wris
   return order;
 }
 
+/// Three joints of each finger one after the other from its first, and its tip elsewhere; thumb to little.
+JointOrder with_tips(const char* name, std::size_t size, const std::array<std::size_t, kFingers>& first,
+                     const std::array<std::size_t, kFingers>& tips) {
+  JointOrder order{name, size, 0, {}};
+  for (std::size_t f = 0; f < kFingers; ++f)
+    order.joints[f] = {{kNone, first[f], first[f] + 1, first[f] + 2, tips[f]}};
+  return order;
+}
+
 std::vector<JointOrder> make_orders() {
+  JointOrder interhand = finger_by_finger("interhand", 21, 20, 0, 4);  // each finger from its tip; the wrist
+  for (auto& finger : interhand.joints) std::reverse(finger.begin() + 1, finger.end());
   JointOrder little_first = finger_by_finger("little_first", 21, 0, 1, 4);
   std::reverse(little_first.joints.begin(), little_first.joints.end());
+  // Wrist, forearm, the thumb's trapezium; thumb to ring without tips; the little finger with its metacarpal;
+  // the tips.
+  JointOrder oculus = with_tips("oculus", 24, {{3, 6, 9, 12, 16}}, {{19, 20, 21, 22, 23}});
+  oculus.joints[4][0] = 15;
   return {finger_by_finger("mediapipe", 21, 0, 1, 4),
           // Wrist; index, middle, little, ring, thumb without tips; the tips, thumb to little.
-          {"mano",
-           21,
-           0,
-           {{{kNone, 13, 14, 15, 16},
-             {kNone, 1, 2, 3, 17},
-             {kNone, 4, 5, 6, 18},
-             {kNone, 10, 11, 12, 19},
-             {kNone, 7, 8, 9, 20}}}},
+          with_tips("mano", 21, {{13, 1, 4, 10, 7}}, {{16, 17, 18, 19, 20}}),
           // The same with the tips in the order of the fingers before.
-          {"mano_tips",
-           21,
-           0,
-           {{{kNone, 13, 14, 15, 20},
-             {kNone, 1, 2, 3, 16},
-             {kNone, 4, 5, 6, 17},
-             {kNone, 10, 11, 12, 19},
-             {kNone, 7, 8, 9, 18}}}},
-          // Thumb to little, each from its tip; the wrist.
-          {"interhand",
-           21,
-           20,
-           {{{kNone, 3, 2, 1, 0},
-             {kNone, 7, 6, 5, 4},
-             {kNone, 11, 10, 9, 8},
-             {kNone, 15, 14, 13, 12},
-             {kNone, 19, 18, 17, 16}}}},
-          little_first,
-          // Wrist, forearm; the thumb's trapezium and three joints; index, middle, ring three each; little
-          // four; tips.
-          {"oculus",
-           24,
-           0,
-           {{{kNone, 3, 4, 5, 19},
-             {kNone, 6, 7, 8, 20},
-             {kNone, 9, 10, 11, 21},
-             {kNone, 12, 13, 14, 22},
-             {15, 16, 17, 18, 23}}}},
-          finger_by_finger("webxr", 25, 0, 1, 5),
-          finger_by_finger("openxr", 26, 1, 2, 5)};
+          with_tips("mano_tips", 21, {{13, 1, 4, 10, 7}}, {{20, 16, 17, 19, 18}}), interhand, little_first,
+          oculus, finger_by_finger("webxr", 25, 0, 1, 5), finger_by_finger("openxr", 26, 1, 2, 5)};
 }
 
 std::string names_of(std::size_t size) {
@@ -194,11 +167,6 @@ std::string names_of(std::size_t size) {
 std::optional<Vector3> known(const Vector3& point) {
   if (!point.allFinite()) return std::nullopt;
   return point;
-}
-
-/// NaN fails the comparison.
-bool is_radius(float radius) {
-  return radius > 0.0f;
 }
 
 /// Mean of |ln(ratio / size)|, each at most kMaxMisfit.
@@ -239,8 +207,7 @@ std::size_t drop_placeholders(HandJoints& hand, bool wrist_is_origin) {
 }
 
 std::size_t drop_stray_joints(HandJoints& hand) {
-  for (std::size_t i = 0; i < kHandJoints; ++i)
-    if (joint(hand, i) && !joint(hand, i)->allFinite()) return 0;  // it will be refused
+  if (!is_finite(hand)) return 0;  // it will be refused
   const std::size_t max_dropped = known_joints(hand) / 3;
   HandJoints without = hand;
   for (std::size_t dropped = 0; dropped <= max_dropped; ++dropped) {
@@ -254,8 +221,16 @@ std::size_t drop_stray_joints(HandJoints& hand) {
   return 0;
 }
 
-bool has_joints(const HandJoints& hand) {
-  return known_joints(hand) > 0;
+std::size_t known_joints(const HandJoints& hand) {
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < kHandJoints; ++i) known += joint(hand, i).has_value();
+  return known;
+}
+
+bool is_finite(const HandJoints& hand) {
+  for (std::size_t i = 0; i < kHandJoints; ++i)
+    if (joint(hand, i) && !joint(hand, i)->allFinite()) return false;
+  return true;
 }
 
 void scale(HandJoints& hand, double factor) {
@@ -286,8 +261,7 @@ const JointOrder* usual_order(std::size_t size) {
 
 const JointOrder& joint_order(const std::string& name) {
   if (const JointOrder* const order = text::find_named(joint_orders(), name)) return *order;
-  throw std::invalid_argument("order '" + text::one_line(name, 60) +
-                              "' is not known; allowed: " + names_of(0));
+  throw std::invalid_argument("order " + text::quoted(name) + " is not known; allowed: " + names_of(0));
 }
 
 HandJoints hand_in_order(const JointOrder& order, const Vector3* points, const float* radii, Side side) {
@@ -302,7 +276,8 @@ HandJoints hand_in_order(const JointOrder& order, const Vector3* points, const f
     for (std::size_t b = 0; radii != nullptr && b < kBonesPerFinger; ++b) {
       if (places[b] == kNone || places[b + 1] == kNone) continue;
       const float start = radii[places[b]], end = radii[places[b + 1]];
-      if (is_radius(start) && is_radius(end)) hand.bone_width[f][b] = start + end;  // twice their mean
+      const bool has_radii = start > 0.0f && end > 0.0f;   // NaN is not
+      if (has_radii) hand.bone_width[f][b] = start + end;  // twice their mean
     }
   }
   return hand;

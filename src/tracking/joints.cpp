@@ -14,33 +14,8 @@
 namespace mrhi {
 namespace {
 
-struct Correspondences {
-  std::array<Vector3, 10> anatomical, measured;
-  std::size_t size = 0;
-
-  void add(const Vector3& anatomical_point, const std::optional<Vector3>& measured_point) {
-    if (!measured_point) return;
-    anatomical[size] = anatomical_point;
-    measured[size++] = *measured_point;
-  }
-};
-
 Vector3 mirrored(const Vector3& point, Side side) {
   return side == Side::left ? Vector3(point.x(), -point.y(), point.z()) : point;
-}
-
-/// The wrist moves relative to the palm, so it is used only if the metacarpals' bases are unknown.
-Correspondences correspondences(const HandJoints& hand) {
-  Correspondences points;
-  points.add(Vector3::Zero(), hand.palm_centre);
-  for (std::size_t i = 0; i < 4; ++i) {
-    points.add(mirrored(anatomy::kMetacarpalBases[i], hand.side), hand.joints[i + 1][0]);
-  }
-  const bool bases_known = points.size > (hand.palm_centre ? 1u : 0u);
-  for (std::size_t i = 0; i < 4; ++i)
-    points.add(mirrored(anatomy::kKnuckles[i], hand.side), hand.joints[i + 1][1]);
-  if (!bases_known) points.add(mirrored(anatomy::kWrist, hand.side), hand.wrist);
-  return points;
 }
 
 /// Fit of the anatomical palm in the device's frame.
@@ -54,14 +29,27 @@ struct PalmFit {
 };
 
 /// The rotation, scale and translation that map the anatomical palm onto the given joints by least squares.
-/// Empty if they do not determine it: fewer than three, collinear, or not of a hand's size.
+/// Empty if they do not determine it: fewer than three, collinear, or not of a hand's size. The wrist moves
+/// relative to the palm, so it is used only if the metacarpals' bases are unknown.
 ///
 ///     sum |s R a_i + t - m_i|^2 -> min,   t = mean m - s R mean a
 /// over a scale s, a rotation R and a place t, a_i of the adult's palm, m_i measured in the device's frame
 /// (Umeyama 1991). A left hand is fitted to the mirrored palm, not by a reflection: R is a rotation for both.
 std::optional<PalmFit> fit_palm(const HandJoints& hand) {
-  const Correspondences points = correspondences(hand);
-  const auto found = registered(points.anatomical.data(), points.measured.data(), points.size);
+  std::array<Vector3, 10> anatomical, measured;
+  std::size_t size = 0;
+  const auto add = [&](const Vector3& point, const std::optional<Vector3>& seen) {
+    if (!seen) return;
+    anatomical[size] = mirrored(point, hand.side);
+    measured[size++] = *seen;
+  };
+  add(Vector3::Zero(), hand.palm_centre);
+  const std::size_t before = size;
+  for (std::size_t i = 0; i < 4; ++i) add(anatomy::kMetacarpalBases[i], hand.joints[i + 1][0]);
+  const bool bases_known = size > before;
+  for (std::size_t i = 0; i < 4; ++i) add(anatomy::kKnuckles[i], hand.joints[i + 1][1]);
+  if (!bases_known) add(anatomy::kWrist, hand.wrist);
+  const auto found = registered(anatomical.data(), measured.data(), size);
   if (!found) return std::nullopt;
   PalmFit fit;
   fit.side = hand.side;
@@ -94,23 +82,16 @@ double bone_radius(const HandJoints& joints, const PalmFit& fit, std::size_t fin
                         : fit.scale * (1e-3 * anatomy::kFingerRadii[finger]));
 }
 
-/// The finger's joints with the metacarpal's base filled in. The thumb has no metacarpal in the palm.
-std::array<std::optional<Vector3>, 5> complete_finger(const HandJoints& joints, const PalmFit& fit,
-                                                      std::size_t finger) {
+/// Joint i is the start of bone i and the end of bone i - 1, in the device's frame; capsules are in world. A
+/// missing base of a metacarpal is filled in; the thumb has no metacarpal in the palm. A bone without length
+/// has no direction, and is left out as if it were missing.
+void place_finger(const HandJoints& joints, const PalmFit& fit, std::size_t finger,
+                  const Pose& device_in_world, Hand& hand) {
   auto completed = joints.joints[finger];
   if (finger > 0 && !completed[0] && completed[1])
     completed[0] = fit.place(anatomy::kMetacarpalBases[finger - 1]);
-  return completed;
-}
-
-/// Joint i is the start of bone i and the end of bone i - 1, in the device's frame; capsules are in world. A
-/// bone without length has no direction, and is left out as if it were missing.
-void place_finger(const HandJoints& joints, const PalmFit& fit, std::size_t finger,
-                  const Pose& device_in_world, Hand& hand) {
-  const auto completed = complete_finger(joints, fit, finger);
   for (std::size_t bone = 0; bone < kBonesPerFinger; ++bone) {
-    const auto& start = completed[bone];
-    const auto& end = completed[bone + 1];
+    const auto &start = completed[bone], &end = completed[bone + 1];
     if (!start || !end || (*end - *start).norm() < kMinBoneLength) continue;
     hand.capsules[finger * kBonesPerFinger + bone] = {device_in_world * *start, device_in_world * *end,
                                                       bone_radius(joints, fit, finger, bone)};

@@ -9,7 +9,6 @@
 #include "../math/registration.h"
 #include "../text/text.h"
 #include "mr_hand_interaction/stamp_check.h"
-#include "mr_hand_interaction/tracking/hand_merger.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
@@ -89,8 +88,7 @@ void JointGaps::Memory::move_on(const Points& now) {
 /// Fills a missing joint from its last place, moved frame by frame, until kLongest after it was last seen. A
 /// filled joint counts as known in the next frame, but not as seen.
 void JointGaps::Memory::take(HandJoints& hand, Nanoseconds at) {
-  for (std::size_t i = 0; i < kJoints; ++i)
-    if (joint(hand, i) && !joint(hand, i)->allFinite()) return;  // it will be refused
+  if (!is_finite(hand)) return;  // it will be refused
   if (at <= stamp || at - stamp > kLongest) points = Points();
   Points now;
   bool gaps = false;
@@ -156,16 +154,16 @@ void JointsInput::correct(Stream& stream, JointsFrame& joints, SourceFrame& resu
   std::vector<HandJoints> hands;
   for (HandJoints& hand : joints.hands) {
     const auto side = static_cast<std::size_t>(hand.side);
-    const bool had_joints = has_joints(hand);
+    const bool had_joints = known_joints(hand) > 0;
     scale(hand, scale_);
     stream.wrist_moves[side] = stream.wrist_moves[side] || (hand.wrist && *hand.wrist != Vector3::Zero());
     const std::size_t placeholders = drop_placeholders(hand, !stream.wrist_moves[side]);
-    const bool is_there = has_joints(hand);
+    const bool is_placeholder = had_joints && known_joints(hand) == 0;
     const std::string name = "hand " + std::to_string(hand.id);
-    if (had_joints && !is_there && !stream.is_placeholder[side])
+    if (is_placeholder && !stream.is_placeholder[side])
       result.corrected.emplace_back(kNoHand, name + " has placeholders for joints: no hand");
-    stream.is_placeholder[side] = had_joints && !is_there;
-    if (had_joints && !is_there) continue;
+    stream.is_placeholder[side] = is_placeholder;
+    if (is_placeholder) continue;
     const std::size_t strays = drop_stray_joints(hand);
     if (placeholders + strays > 0)
       result.corrected.emplace_back(kJointsLeftOut, name + ": " + std::to_string(placeholders) +

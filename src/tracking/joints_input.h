@@ -35,7 +35,11 @@ std::size_t drop_placeholders(HandJoints& hand, bool wrist_is_origin = false);
 /// Drops joints that make a bone impossibly long, at most a third of those known. Returns how many.
 std::size_t drop_stray_joints(HandJoints& hand);
 
-bool has_joints(const HandJoints& hand);
+/// Number of joints that a hand has.
+std::size_t known_joints(const HandJoints& hand);
+
+/// True if all coordinates of the known joints are finite.
+bool is_finite(const HandJoints& hand);
 
 /// Multiplies all lengths by a factor: metres per unit of the tracker.
 void scale(HandJoints& hand, double factor);

@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "hand_filter.h"
-#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 namespace {

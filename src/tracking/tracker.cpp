@@ -6,7 +6,6 @@
 
 #include "../math/minimum_jerk.h"
 #include "../math/rotation.h"
-#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
@@ -87,11 +86,12 @@ constexpr double kMaxGrowth = 4.0, kMaxOnset = 4.0 * kMaxOvershoot;
 constexpr double kBendFraction = 0.125;
 
 /// All numbers of a HandVelocity side by side: its points and, last, its turn.
-constexpr std::size_t kNumbers = 3 * (kHandPoints + 1);
+constexpr int kNumbers = 3 * (static_cast<int>(kHandPoints) + 1);
 static_assert(sizeof(HandVelocity) == kNumbers * sizeof(double), "points and turn lie side by side");
+using Numbers = Eigen::Array<double, kNumbers, 1>;
 
-double* numbers(HandVelocity& velocity) {
-  return velocity.points[0].data();
+Eigen::Map<Numbers> numbers(HandVelocity& velocity) {
+  return Eigen::Map<Numbers>(velocity.points[0].data());
 }
 
 double longest_point(const HandVelocity& of) {
@@ -135,18 +135,13 @@ void extend_path(double elapsed, HandTrack& track) {
                four = three + path.intervals[2];
   const double over_two = 1.0 / two, over_three = 1.0 / three, of_last = elapsed * two * three / four;
   HandVelocity &beyond = path.end_bend, &last = path.start_bend;
-  double* __restrict mean = numbers(chord);
-  double* __restrict extrapolated = numbers(beyond);
-  double* __restrict fourth = numbers(last);
-  double* __restrict d1 = numbers(path.differences[0]);
-  double* __restrict d2 = numbers(path.differences[1]);
-  double* __restrict d3 = numbers(path.differences[2]);
-  for (std::size_t i = 0; i < kNumbers; ++i) {
-    const double second = over_two * (mean[i] - d1[i]), third = over_three * (second - d2[i]);
-    fourth[i] = of_last * (third - d3[i]);
-    extrapolated[i] = elapsed * (second + two * third) + fourth[i];
-    d1[i] = mean[i], d2[i] = second, d3[i] = third;
-  }
+  auto mean = numbers(chord), extrapolated = numbers(beyond), fourth = numbers(last),
+       d1 = numbers(path.differences[0]), d2 = numbers(path.differences[1]),
+       d3 = numbers(path.differences[2]);
+  const Numbers second = over_two * (mean - d1), third = over_three * (second - d2);
+  fourth = of_last * (third - d3);
+  extrapolated = elapsed * (second + two * third) + fourth;
+  d1 = mean, d2 = second, d3 = third;
   path.intervals = {elapsed, path.intervals[0], path.intervals[1]};
   if (path.order > 2) {
     path.noise += kNewWeight * (energy_of_points(last) - path.noise);
@@ -159,24 +154,19 @@ void extend_path(double elapsed, HandTrack& track) {
 
   // The path arrived with a velocity that differs from the start of a smooth one. The fraction of the
   // difference that is kept limits the detour, 4/27 of T times it.
-  double* __restrict start = numbers(path.start_bend);
-  double* __restrict arrived = numbers(path.velocity);
+  auto start = numbers(path.start_bend), arrived = numbers(path.velocity);
   const double goes_on = path.order > 0 ? 1.0 : 0.0;
-  for (std::size_t i = 0; i < kNumbers; ++i) {
-    extrapolated[i] *= kept;
-    start[i] = goes_on * (arrived[i] - mean[i] + extrapolated[i]);
-    arrived[i] = mean[i] + extrapolated[i];
-  }
+  extrapolated *= kept;
+  start = goes_on * (arrived - mean + extrapolated);
+  arrived = mean + extrapolated;
   const double detour = 4.0 / 27.0 * elapsed * longest_point(path.start_bend);
   const double allowed = kMaxOvershoot + kBendFraction * elapsed * path.extrapolated;
   const double part = detour > allowed ? allowed / detour : 1.0;
-  for (std::size_t i = 0; i < kNumbers; ++i) {
-    start[i] = elapsed * (part * start[i] - extrapolated[i]);
-    extrapolated[i] *= elapsed;
-  }
+  start = elapsed * (part * start - extrapolated);
+  extrapolated *= elapsed;
   const double renewed = 1.0 - std::exp(-elapsed / kMeanVelocity);
-  double* __restrict mean_velocity = numbers(track.mean_velocity);
-  for (std::size_t i = 0; i < kNumbers; ++i) mean_velocity[i] += renewed * (mean[i] - mean_velocity[i]);
+  auto mean_velocity = numbers(track.mean_velocity);
+  mean_velocity += renewed * (mean - mean_velocity);
   path.longest_bend = 27.0 / 4.0 * std::min(detour, allowed) + elapsed * path.extrapolated;
   path.order = std::min(path.order + 1, 3);
 }
@@ -191,52 +181,39 @@ constexpr double kFilterTransition = 0.2;
 
 using Assignment = std::array<int, kMaxHands>;  // slot -> index in the frame, -1: none
 
-template <typename Fits>
-void assign(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands, Fits fits,
-            Assignment& assignment) {
-  for (std::size_t slot = 0; slot < hands.size(); ++slot) {
-    for (int i = 0; i < static_cast<int>(seen.size()) && assignment[slot] < 0; ++i) {
-      const bool assigned = std::find(assignment.begin(), assignment.end(), i) != assignment.end();
-      if (!assigned && fits(hands[slot], seen[i])) assignment[slot] = i;
-    }
-  }
-}
-
 /// True for a free slot with a noise estimate of hands of this side.
 bool was_last_here(const HandTrack& track, const Hand& hand) {
   return !track.active && track.filter.noise.size > 0 && track.current.side == hand.side;
 }
 
-/// Applies criteria in order of certainty, each to all slots: id and side; id alone (a tracker that confuses
-/// left and right); a new id near a held hand; then free slots, those with the noise of this side first.
-/// Slots and hands are tried in order, so that equal frames give equal tracks.
+/// Criteria by which a hand continues a track, in order of certainty.
+constexpr bool (*kCriteria[])(const HandTrack&, const Hand&) = {
+    [](const HandTrack& track, const Hand& hand) {
+      return track.active && track.current.id == hand.id && track.current.side == hand.side;
+    },
+    // A tracker that confuses left and right.
+    [](const HandTrack& track, const Hand& hand) { return track.active && track.current.id == hand.id; },
+    // A new id near a held hand.
+    [](const HandTrack& track, const Hand& hand) {
+      return track.active && track.current.side == hand.side &&
+             (track.current.palm.position - hand.palm.position).norm() < kSameHandDistance;
+    },
+    // Free slots, those with the noise of this side first.
+    was_last_here,
+    [](const HandTrack& track, const Hand&) { return !track.active && track.filter.noise.size == 0; },
+    [](const HandTrack& track, const Hand&) { return !track.active; }};
+
+/// Applies each criterion to all slots before the next. Slots and hands are tried in order, so that equal
+/// frames give equal tracks.
 Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands) {
   Assignment assignment;
   assignment.fill(-1);
-  const auto same_id = [](const HandTrack& track, const Hand& hand) {
-    return track.active && track.current.id == hand.id;
-  };
-  assign(
-      seen, hands,
-      [&](const HandTrack& track, const Hand& hand) {
-        return same_id(track, hand) && track.current.side == hand.side;
-      },
-      assignment);
-  assign(seen, hands, same_id, assignment);
-  assign(
-      seen, hands,
-      [](const HandTrack& track, const Hand& hand) {
-        return track.active && track.current.side == hand.side &&
-               (track.current.palm.position - hand.palm.position).norm() < kSameHandDistance;
-      },
-      assignment);
-  assign(seen, hands, was_last_here, assignment);
-  assign(
-      seen, hands,
-      [](const HandTrack& track, const Hand&) { return !track.active && track.filter.noise.size == 0; },
-      assignment);
-  assign(
-      seen, hands, [](const HandTrack& track, const Hand&) { return !track.active; }, assignment);
+  for (const auto fits : kCriteria)
+    for (std::size_t slot = 0; slot < hands.size(); ++slot)
+      for (int i = 0; i < static_cast<int>(seen.size()) && assignment[slot] < 0; ++i) {
+        const bool assigned = std::find(assignment.begin(), assignment.end(), i) != assignment.end();
+        if (!assigned && fits(hands[slot], seen[i])) assignment[slot] = i;
+      }
   return assignment;
 }
 
@@ -357,10 +334,6 @@ void track_hands(const HandFrame& frame, const Configuration& configuration, std
       events.push_back({frame.stamp, EventKind::hand_found, -1, hand.id});
     }
   }
-}
-
-void check_filter(FilterKind kind) {
-  hand_filter(kind);
 }
 
 /// The new filter starts at rest from the last pose, with an unknown error. The old filter continues beside

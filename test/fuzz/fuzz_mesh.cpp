@@ -29,7 +29,9 @@ TriangleMesh mesh_of(fuzzing::Bytes& bytes) {
 
 TriangleMesh mesh_of_file(int kind, const std::string& text) {
   static const char* const names[] = {"mesh.stl", "mesh.obj", "mesh.dae"};
-  LoadedMesh loaded = load_meshes({{fuzzing::folder().write(names[kind], text), Vector3::Ones()}}).front();
+  MeshBudget budget;
+  LoadedMesh loaded =
+      load_meshes({{fuzzing::folder().write(names[kind], text), Vector3::Ones()}}, budget).front();
   if (!loaded.problem.empty()) throw std::runtime_error(loaded.problem);
   return loaded.mesh;
 }

@@ -99,6 +99,7 @@ TEST(CommandLine, a_program_ends_with_2_for_bad_usage_and_1_for_bad_data) {
   };
   EXPECT_EQ(ended([]() -> int { throw UsageError("so not"); }), "2 tool: so not\n");
   EXPECT_EQ(ended([]() -> int { throw std::runtime_error("broken"); }), "1 tool: broken\n");
+  EXPECT_EQ(ended([]() -> int { throw std::runtime_error("a.csv: \x1b[31m\n"); }), "1 tool: a.csv: ?[31m\n");
   EXPECT_EQ(ended([] { return 0; }), "0 ");
   EXPECT_EQ(ended([] { return 1; }), "1 ");
 }

@@ -37,6 +37,25 @@ std::string error_of(const std::string& text) {
 const char* const kHeader =
     "is_left,time_s,frame_id,hand_id,wrist_x,wrist_y,wrist_z,index_width,index_j1_x,index_j1_y,index_j1_z\n";
 
+// As R's write.csv writes a table, and people type one.
+TEST(RecordingCsv, QuotesAndBlanksAroundCellsAreNoPartOfThem) {
+  const RecordingFile file(
+      "\"\",\"time_s\",\"hand_id\",\"is_left\",\"wrist_x\",\"wrist_y\",\"wrist_z\",\"palm_width\"\n"
+      "\"1\", 0.5,\t\"7\" ,0, 1, 2, 3, NA\r\n");
+  const std::vector<JointsFrame> frames = read_recording_csv(file.path());
+  ASSERT_EQ(1u, frames.size());
+  EXPECT_EQ(500'000'000, frames[0].stamp);
+  EXPECT_EQ(7u, frames[0].hands.at(0).id);
+  EXPECT_EQ(Vector3(1, 2, 3), frames[0].hands[0].wrist.value());
+  EXPECT_FALSE(frames[0].hands[0].palm_width);
+}
+
+TEST(RecordingCsv, AColumnThatIsGivenTwiceAndACompressedTableAreRefused) {
+  EXPECT_EQ(":1: column 'time_s' is given twice; allowed: once", error_of("time_s,hand_id,time_s\n0,1,2\n"));
+  EXPECT_EQ(": is compressed by gzip; allowed: the table that 'gunzip' makes of it",
+            error_of("\x1F\x8B\x08\x01time_s\n"));
+}
+
 TEST(RecordingCsv, ColumnsAreFoundByNameAndEmptyCellsAreAbsent) {
   const RecordingFile file(std::string(kHeader) + "1,0.016001,5,12,,,,0.018,0.1,-0.2,3e-1\r\n");
   const auto frames = read_recording_csv(file.path());

@@ -10,6 +10,7 @@
 #include "record/record.h"
 #include "replay/replay_files.h"
 #include "replay/run.h"
+#include "scene/scene_files.h"
 #include "simulation/state_bytes.h"
 #include "text/files.h"
 #include "text/text.h"
@@ -306,6 +307,35 @@ TEST(ReplayLog, the_scene_is_built_from_the_recording_alone) {
   EXPECT_EQ(summary["materials"]["part"]["static_friction"].as<double>(), 0.7);
 }
 
+// A glTF has its vertices in another file, perhaps in a folder below.
+TEST(ReplayLog, a_mesh_that_names_other_files_is_replayed_without_them) {
+  test::Folder scene;
+  const std::string& folder = scene.path();
+  std::filesystem::create_directories(folder + "/meshes/buffers");
+  scene.write("meshes/part.gltf", test::gltf_of("buffers/part.bin"));
+  scene.write("meshes/buffers/part.bin", test::gltf_buffer());
+  const std::string mesh = "<collision><geometry><mesh filename='meshes/part.gltf'/></geometry></collision>";
+  Live live(scene.write("own.urdf", test::thing(test::kInertial + mesh)), Configuration());
+  live.begin_recording();
+  Spawn spawn = box("late", {0.5, 0.0, 0.3});
+  spawn.request.shape.clear(), spawn.request.size.clear();
+  spawn.request.folder = folder;
+  spawn.request.urdf = "<robot name='o'><link name='l'>" + mesh + "</link></robot>";
+  live.change(spawn);
+  live.play(test::motion_frames("grasp_cube", kRate, 0), 0.0, 0.1);
+  std::filesystem::remove_all(folder + "/meshes");
+  EXPECT_EQ(Replayed().run(live)["live_run"]["same"].as<std::size_t>(), live.entries.size());
+}
+
+TEST(ReplayLog, a_recorded_file_stays_in_the_folder_of_the_replay_whatever_its_name) {
+  const test::Folder folder;
+  for (const auto& [name, path] : written_to(
+           folder.path() + "/in", {{"../../a.obj", "1"}, {"file:///b/../../../c.obj", "2"}, {"/d.obj", "3"}}))
+    EXPECT_EQ(std::filesystem::canonical(path).string().find(folder.path() + "/in/0/"), 0u) << name;
+  EXPECT_EQ(written_to(folder.path() + "/in", {{"/d.obj", "3"}})["/d.obj"], folder.path() + "/in/0/d.obj");
+  EXPECT_EQ(written_to(folder.path() + "/in", {{"/d.obj", "4"}})["/d.obj"], folder.path() + "/in/1/d.obj");
+}
+
 // What shows the markers reads the meshes' files after the replay has ended.
 TEST(ReplayLog, markers_keep_every_mesh_of_the_recording_beside_them) {
   const auto mesh = [](const std::string& name, double x) {
@@ -332,7 +362,7 @@ TEST(ReplayLog, markers_keep_every_mesh_of_the_recording_beside_them) {
   replayed.arguments.marker_frames = {1};
   replayed.run(live);
   std::set<std::string> kept;
-  for (const auto& file : std::filesystem::directory_iterator(replayed.folder / "out/files"))
+  for (const auto& file : std::filesystem::recursive_directory_iterator(replayed.folder / "out/files"))
     if (file.path().extension() == ".obj") kept.insert(file_text(file.path().string(), 1000).value());
   EXPECT_EQ(kept, std::set<std::string>(shapes.begin(), shapes.end()));
 }

@@ -76,6 +76,27 @@ inline void expect_words(const std::string& message, const std::vector<std::stri
     EXPECT_NE(std::string::npos, message.find(word)) << word << "\n" << message;
 }
 
+/// A glTF of a tetrahedron with legs of 0.1 m, whose buffer is another file.
+inline std::string gltf_of(const std::string& buffer) {
+  return R"({"asset": {"version": "2.0"}, "buffers": [{"uri": ")" + buffer + R"(", "byteLength": 144}],
+    "bufferViews": [{"buffer": 0, "byteLength": 144}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 12, "type": "VEC3",
+                   "min": [0, 0, 0], "max": [0.1, 0.1, 0.1]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0})";
+}
+
+inline std::string gltf_buffer() {
+  std::string bytes;
+  for (const int corner : {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}) {
+    for (int axis = 1; axis <= 3; ++axis) {
+      const float place = axis == corner ? 0.1f : 0.0f;
+      bytes.append(reinterpret_cast<const char*>(&place), sizeof place);
+    }
+  }
+  return bytes;
+}
+
 /// Volume by the divergence theorem: positive if all triangles are turned outward [m^3].
 inline double volume(const TriangleMesh& mesh) {
   double six_volumes = 0;

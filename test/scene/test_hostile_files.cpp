@@ -1,11 +1,18 @@
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
 #include <regex>
+#include <sstream>
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "mr_hand_interaction/training/task.h"
 #include "scene/scene_files.h"
+#include "scene/solid_mesh.h"
 
 namespace mrhi {
 namespace {
@@ -95,6 +102,100 @@ TEST(HostileYaml, given_as_text_is_refused_alike) {
     } catch (const ParameterError& error) {
       EXPECT_LT(std::string(error.what()).size(), 500u);
     }
+  }
+}
+
+/// A scene of one body of this mesh.
+std::string mesh_error(const test::Folder& folder, const std::string& mesh) {
+  return test::scene_error(folder.write(
+      "s.urdf", test::thing(std::string(test::kInertial) + "<collision><geometry><mesh filename=\"" + mesh +
+                            "\"/></geometry></collision>")));
+}
+
+// A scene goes to others, by topics, bags and saved files: a mesh of a stranger must not put files of this
+// machine into it. A pipe as a buffer waits without end.
+TEST(HostileMesh, reads_regular_files_in_its_folder_only) {
+  const test::Folder around;
+  std::filesystem::create_directories(around.path() + "/in/below");
+  around.write("secret.bin", test::gltf_buffer());
+  around.write("in/below/own.bin", test::gltf_buffer());
+  const std::string in = around.path() + "/in/";
+  std::filesystem::create_symlink("../secret.bin", in + "link.bin");
+  std::filesystem::create_symlink("below/own.bin", in + "inner.bin");
+  ASSERT_EQ(0, mkfifo((in + "pipe.bin").c_str(), 0600));
+  const auto error = [&](const std::string& buffer) {
+    around.write("in/part.gltf", test::gltf_of(buffer));
+    return mesh_error(around, "in/part.gltf");
+  };
+  EXPECT_EQ(error("below/own.bin"), "");
+  EXPECT_EQ(error("below/../inner.bin"), "");
+  for (const char* buffer : {"../secret.bin", "link.bin", "below/../../secret.bin"})
+    test::expect_words(error(buffer),
+                       {"mesh 'in/part.gltf' names the file '", "in the mesh's folder; allowed"});
+  test::expect_words(error("pipe.bin"), {"mesh 'in/part.gltf' names the file 'pipe.bin', which is no file"});
+  std::filesystem::resize_file(in + "below/own.bin", (64u << 20) + 1);
+  test::expect_words(error("below/own.bin"), {"names the file 'below/own.bin', which has 67108865 bytes"});
+  test::expect_words(error("none.bin"), {"mesh 'in/part.gltf' cannot be read", "none.bin"});
+}
+
+TEST(HostileMesh, that_is_a_symlink_reads_the_files_beside_its_target) {
+  const test::Folder folder;
+  std::filesystem::create_directories(folder.path() + "/source");
+  folder.write("source/part.gltf", test::gltf_of("part.bin"));
+  folder.write("source/part.bin", test::gltf_buffer());
+  std::filesystem::create_directories(folder.path() + "/installed");
+  for (const char* file : {"part.gltf", "part.bin"})
+    std::filesystem::create_symlink(std::string("../source/") + file, folder.path() + "/installed/" + file);
+  EXPECT_EQ(mesh_error(folder, "installed/part.gltf"), "");
+}
+
+// An open fan of 20 000 points keeps the search for its hull busy for minutes.
+TEST(HostileMesh, that_takes_long_ends_once_it_is_cancelled) {
+  const test::Folder folder;
+  std::ostringstream obj;
+  constexpr int kPoints = 20'000;
+  obj << "v 0 0 0\nv 0 0 .05\n";
+  for (int i = 0; i < kPoints; ++i) {
+    const double turn = 6.28 * i / kPoints;
+    obj << "v " << 0.05 * std::cos(turn) << " " << 0.05 * std::sin(turn) << " .02\n";
+  }
+  for (int i = 0; i < kPoints; ++i) obj << "f 1 2 " << i + 3 << "\n";
+  folder.write("fan.obj", obj.str());
+  int asked = 0;
+  SceneOptions options;
+  options.is_cancelled = [&] { return ++asked > 5; };
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string urdf = folder.write(
+      "s.urdf", test::thing(std::string(test::kInertial) +
+                            "<collision><geometry><mesh filename=\"fan.obj\"/></geometry></collision>"));
+  test::expect_words(test::scene_error(urdf, options), {"is cancelled"});
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+}
+
+TEST(HostileMesh, has_its_triangles_counted_with_the_other_meshes_of_the_scene) {
+  const test::Folder folder;
+  const std::string obj = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const MeshFile a{folder.write("a.obj", obj), Vector3::Ones()}, larger{a.file, Vector3(2, 1, 1)},
+      b{folder.write("b.obj", obj), Vector3::Ones()}, solid{a.file, a.scale, MeshUse::solid};
+  MeshBudget budget{11, 20.0};
+  const std::vector<LoadedMesh> meshes = load_meshes({a, solid, b, larger}, budget);
+  for (const int i : {0, 1, 2}) EXPECT_EQ(meshes[i].problem, "") << i;
+  test::expect_words(meshes[3].problem, {"over 11 triangles"});
+  test::expect_words(load_meshes({a}, budget)[0].problem, {"over 0 triangles"});
+  MeshBudget no_time{11, 0.0};
+  test::expect_words(load_meshes({a, b}, no_time)[1].problem, {"more time than is allowed in all"});
+}
+
+// Colours are not used.
+TEST(HostileMesh, needs_no_materials_of_an_obj) {
+  const test::Folder folder;
+  const std::string obj =
+      "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\ng nothing\n";
+  ASSERT_EQ(0, mkfifo((folder.path() + "/pipe.mtl").c_str(), 0600));
+  folder.write("own.mtl", "newmtl a\nmap_Kd none.png\n");
+  for (const char* materials : {"own.mtl", "none.mtl", "../../etc/passwd", "pipe.mtl"}) {
+    folder.write("part.obj", "mtllib " + std::string(materials) + "\n" + obj);
+    EXPECT_EQ(mesh_error(folder, "part.obj"), "") << materials;
   }
 }
 
@@ -235,6 +336,42 @@ std::string mesh_error(const std::string& name, const std::string& text) {
   return test::scene_error(folder.write(
       "s.urdf", test::thing(std::string(test::kInertial) + "<collision><geometry><mesh filename=\"" + name +
                             "\"/></geometry></collision>")));
+}
+
+TEST(HostileUrdf, that_says_too_much_or_too_little_is_not_guessed_at_in_silence) {
+  const test::Folder folder;
+  const std::string two =
+      "<collision><geometry><box size=\".1 .1 .1\"/><sphere radius=\"1\"/></geometry></collision>";
+  const Scene scene = load_scene(folder.write("s.urdf", test::thing(test::kInertial + two)), {});
+  EXPECT_EQ(scene.warnings,
+            std::vector<std::string>{
+                "a visual or collision has one shape: its others are left out: link 'thing' collision"});
+  for (const char* mass : {"<mass value=\"\"/>", "<mass/>"})
+    test::expect_words(urdf_error(test::thing("<inertial>" + std::string(mass) + "</inertial>" + test::kBox)),
+                       {"link 'thing' inertial: mass has no value"});
+}
+
+// Chains of 9000 links took 40 s.
+TEST(HostileUrdf, of_a_long_chain_of_links_is_read_in_linear_time) {
+  const test::Folder folder;
+  const auto seconds = [&](int links, const std::string& first) {
+    std::string content = test::joint(first, "world", "l0", "xyz=\"0.5 0 0\"");
+    for (int i = 0; i < links; ++i) {
+      const std::string name = "l" + std::to_string(i);
+      content += test::link(name, i == links - 1 ? test::kInertial + std::string(test::kBox) : "");
+      if (i > 0) content += test::joint("fixed", "l" + std::to_string(i - 1), name, "xyz=\"0 0 1e-5\"");
+    }
+    const std::string file = folder.write("s.urdf", test::robot(content));
+    const auto begin = std::chrono::steady_clock::now();
+    const Scene scene = load_scene(file, {});
+    EXPECT_EQ(scene.bodies.size(), 1u);
+    EXPECT_NEAR((scene.bodies[0].start.position - Vector3(0.5, 0.0, 1e-5 * (links - 1))).norm(), 0.0, 1e-9);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  for (const char* first : {"fixed", "floating"}) {
+    const double few = seconds(800, first);
+    EXPECT_LT(seconds(8000, first), 30 * few + 0.2) << first;
+  }
 }
 
 // Thirty nodes, each of which has the next twice: 2^30 nodes, more than any machine's memory.

@@ -110,6 +110,8 @@ TEST(ObjectRequest, a_bad_one_is_refused_with_one_line) {
   test::expect_words(error_of(primitive("cylinder", {1e-5, 1000}, 1e-6)),
                      {"principal moments", "the smallest more than 1e-12 of the largest"});
   test::expect_words(error_of(primitive("sphere", {1}, -2.0)), {"-2"});
+  for (const double mass : {0.1, 0.0})  // in a file, a shape that small is left out
+    test::expect_words(error_of(primitive("sphere", {1e-6}, mass)), {"radius 1e-06 m", "from 1e-05"});
   ObjectRequest bad = primitive("sphere", {0.1});
   bad.name = "a b";
   test::expect_words(error_of(bad), {"name"});
@@ -135,6 +137,13 @@ TEST(ObjectRequest, a_bad_one_is_refused_with_one_line) {
   const std::string door = test::link("door", test::kInertial + std::string(test::kBox));
   test::expect_words(error_of(urdf(test::robot(door + test::joint("continuous", "world", "door")))),
                      {"turns or slides", "floating, fixed"});
+}
+
+TEST(ObjectRequest, of_a_urdf_whose_only_shape_is_left_out_is_refused) {
+  const std::string speck = "<collision><geometry><sphere radius=\"1e-6\"/></geometry></collision>";
+  for (const std::string mass : {"", test::kInertial})
+    test::expect_words(error_of(urdf("<robot name=\"r\">" + test::link("a", mass + speck) + "</robot>")),
+                       {"link 'a'", "no collision with a volume"});
 }
 
 TEST(ObjectRequest, a_whole_scene_whose_bodies_begin_inside_each_other_is_refused_with_their_names) {

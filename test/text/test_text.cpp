@@ -96,6 +96,11 @@ TEST(Text, one_line_has_single_spaces_and_nothing_that_a_terminal_obeys) {
   EXPECT_EQ(text::one_line("\x1b[31mred\x07\x7f"), "?[31mred??");
   EXPECT_EQ(text::one_line("W\xC3\xBCrfel"), "W\xC3\xBCrfel");
   EXPECT_EQ(text::one_line("\n \t"), "");
+  EXPECT_EQ(text::one_line("\xC2\x9B"
+                           "31m\xC2\xA0\xC2\x80"),
+            "?31m\xC2\xA0?")
+      << "C1 controls";
+  EXPECT_EQ(text::one_line("a\xFF\x9B\xE2\x82 b\xC3"), "a???? b?") << "bytes that are not UTF-8";
   const std::string line = text::one_line("a \n\x01 b ");
   EXPECT_EQ(text::one_line(line), line);
 }
@@ -103,6 +108,7 @@ TEST(Text, one_line_has_single_spaces_and_nothing_that_a_terminal_obeys) {
 TEST(Text, one_line_is_cut_beyond_its_length_alone) {
   EXPECT_EQ(text::one_line("abcdef", 6), "abcdef");
   EXPECT_EQ(text::one_line("abcdefg", 6), "abcdef...");
+  EXPECT_EQ(text::one_line("abcde\xC3\xBC", 6), "abcde...") << "between characters";
   EXPECT_EQ(text::one_line(std::string(300, 'x')), std::string(300, 'x'));
   EXPECT_EQ(text::one_line(std::string(301, 'x')), std::string(300, 'x') + "...");
 }

@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <functional>
+#include <thread>
 
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "scene/scene_files.h"
@@ -152,6 +154,32 @@ TEST(LimitedChild, that_never_ends_is_ended) {
                           }
                         }),
             kTooMuch);
+}
+
+double seconds_of(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+std::string sleep_long() {
+  std::this_thread::sleep_for(std::chrono::seconds(60));
+  return "";
+}
+
+// A pipe or a network's file takes no processor time.
+TEST(LimitedChild, that_waits_is_ended_by_the_clock) {
+  const ChildLimits short_limits{0.3, 256u << 20, 1u << 20};
+  EXPECT_LT(seconds_of([&] { EXPECT_EQ(child_error(short_limits, sleep_long), kTooMuch); }), 5.0);
+}
+
+TEST(LimitedChild, ends_once_it_is_cancelled) {
+  const ChildLimits long_limits{60, 256u << 20, 1u << 20};
+  int asked = 0;
+  const double seconds = seconds_of([&] {
+    EXPECT_THROW(run_in_child(long_limits, sleep_long, [&] { return ++asked > 2; }), std::runtime_error);
+  });
+  EXPECT_LT(seconds, 5.0);
 }
 
 TEST(FileText, is_as_much_as_is_asked_for) {

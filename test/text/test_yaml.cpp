@@ -32,6 +32,12 @@ TEST(SafeYaml, is_taken_to_its_limits_and_no_further) {
   EXPECT_EQ(refusal(comment + "#"), "here: is longer than 262144 bytes; allowed: at most that");
 }
 
+TEST(SafeYaml, is_one_document) {
+  EXPECT_EQ(refusal("---\na: 1\n"), "");
+  EXPECT_EQ(refusal("a: 1\n...\n"), "");
+  EXPECT_EQ(refusal("a: 1\n---\na: 2\n"), "here: has a second document, below '---'; allowed: one");
+}
+
 TEST(SafeYaml, depth_is_counted_anew_beside_what_was_deep) {
   std::string beside;
   for (int i = 0; i < 40; ++i) beside += "- " + nested(31, "[", "]") + "\n";

@@ -17,9 +17,9 @@ struct Bounds {
   Vector3 max{1.5, 1.5, 2.0};
 };
 
-/// A mesh file used by a scene.
+/// A mesh file used by a scene, or a file that it names, such as the buffer of a glTF.
 struct SceneFile {
-  std::string name;  ///< as in the URDF
+  std::string name;  ///< as in the URDF; of a named file: in the mesh's folder
   std::string path;  ///< path from which it was read
 };
 

@@ -23,6 +23,8 @@ struct SceneOptions {
   double density = 1000.0;  ///< of bodies without a mass [kg/m^3]
   /// Replacement files for mesh names of a URDF, which take precedence.
   std::map<std::string, std::string> mesh_files{};
+  /// Asked ten times a second while meshes are read; once it is true, loading throws SceneError.
+  std::function<bool()> is_cancelled{};
 };
 
 /// Finds a scene's URDF file: `scene` is a path to a URDF, or a name looked up as DIRECTORY/NAME.urdf. Throws

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <assimp/DefaultIOSystem.h>
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+
+namespace mrhi {
+
+constexpr std::uintmax_t kMaxMeshBytes = 64u << 20;  ///< of a mesh file, and of each file that it names
+
+/// File system of assimp for one mesh, which may name other files: a glTF's buffers, an OBJ's materials.
+/// Opens only regular files in or below the mesh's own folder, as other files are not the mesh's to publish.
+class MeshFileSystem : public Assimp::DefaultIOSystem {
+ public:
+  explicit MeshFileSystem(const std::string& mesh_file);
+
+  bool Exists(const char* file) const override;
+  /// Returns null for a file that is refused or missing.
+  Assimp::IOStream* Open(const char* file, const char* mode = "rb") override;
+
+  /// Opened files besides the mesh, relative to its folder.
+  const std::set<std::string>& opened() const { return opened_; }
+  /// Reason why a file was refused, with its name; continues a message after the mesh's name. Empty: none.
+  const std::string& refusal() const { return refusal_; }
+
+ private:
+  std::string why_refused(const std::filesystem::path& file) const;
+
+  std::filesystem::path mesh_;
+  std::set<std::filesystem::path> folders_;  ///< of the mesh and of the target of a symlink to it
+  std::set<std::string> opened_;
+  std::string refusal_;
+};
+
+}  // namespace mrhi
