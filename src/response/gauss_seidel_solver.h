@@ -38,7 +38,8 @@ class GaussSeidelSolver {
   void start(const ContactPatch& patch, std::size_t point, const Vector3& force);
   void relax(ContactPatch& patch);
 
-  bool is_nearly_at_rest(const ContactStep& step) const;
+  double max_mass_ratio() const;
+  double max_speed() const;
   double missing_speed(const ContactStep& step, const Range& range) const;
   double max_speed_gain() const;
   bool admit_closing(const ContactStep& step);

@@ -78,6 +78,7 @@ void IslandProblem::number_unknowns(const ContactStep& step, const Island& islan
   for (Vector* vector : {&gradient_, &fall_, &weights_}) vector->setZero(count);
   for (Vector* vector : {&direction_, &change_, &momentum_}) vector->resize(count);
   unknowns_.clear();
+  columns_.resize(island.bodies.size());
   for (std::size_t i = 0; i < linkages.size(); ++i) {
     if (has(linkages[i])) add_linkage(step, island, linkages[i], motions[i]);
   }
@@ -103,6 +104,7 @@ void IslandProblem::add_linkage(const ContactStep& step, const Island& island, c
     const auto index = static_cast<std::size_t>(link.body);
     motion.push(i, step.bodies[index].linear_momentum, step.bodies[index].angular_momentum, momenta);
     motion.push(i, (step_ * body.mass) * step.gravity, Vector3::Zero(), fall);
+    columns_[static_cast<std::size_t>(island.place_of(index))] = {first, count};
     motion.add_jacobian(i, jacobian_.block(6 * island.place_of(index), first, 6, count));
     if (link.joint == LinkageBody::kNone) {
       weights_.segment<3>(first).setOnes();
@@ -121,6 +123,7 @@ void IslandProblem::add_body_without_joint(const ContactStep& step, const Island
   const Body& body = step.scene.bodies[index];
   const BodyState& state = step.bodies[index];
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
+  columns_[static_cast<std::size_t>(island.place_of(index))] = {first, 6};
   jacobian_.block<6, 6>(6 * island.place_of(index), first).setIdentity();
   mass_.block<3, 3>(first, first).diagonal().setConstant(body.mass);
   mass_.block<3, 3>(first + 3, first + 3) = rotation * body.inertia * rotation.transpose();
@@ -193,26 +196,38 @@ void IslandProblem::add_point_jacobian(int number, const Vector3& arm, double si
 /// velocity and spin. -dt/du is diagonal and not negative. Only the lower triangle is computed.
 void IslandProblem::factorise_joints() {
   hessian_ = mass_;
-  auto lower = hessian_.triangularView<Eigen::Lower>();
   for (const SpringContact& row : rows_) {
     const SpringResponse& response = row.response;
     if (response.normal_slope <= 0.0 && response.tangential_slope <= 0.0) continue;
     const Vector3 n = vector(row.spring.normal), tilt = vector(row.tilt);
-    point_jacobian_.setZero(3, mass_.cols());
-    spin_jacobian_.setZero(mass_.cols());
-    const auto add = [&](int number, const Triple& arm, double sign) {
-      const auto angular = jacobian_.middleRows<3>(6 * number + 3);
-      add_point_jacobian(number, vector(arm), sign, point_jacobian_);
-      if (row.tilts) point_jacobian_ += (sign * n * tilt.transpose()).lazyProduct(angular);
-      spin_jacobian_ += (sign * n.transpose()).lazyProduct(angular);
+    const auto has = [&row](int number) { return number != SpringContact::kNone; };
+    // Of the unknowns only those of the two bodies, or of their linkages, move the point.
+    const Columns b = columns_[static_cast<std::size_t>(row.b)],
+                  a = has(row.a) ? columns_[static_cast<std::size_t>(row.a)] : b;
+    const Columns &low = a.first < b.first ? a : b, &high = a.first < b.first ? b : a;
+    const Eigen::Index count = low.count + (low.first == high.first ? 0 : high.count);
+    point_jacobian_.setZero(3, count);
+    spin_jacobian_.setZero(count);
+    const auto add = [&](int number, const Columns& columns, const Triple& arm, double sign) {
+      const Eigen::Index at = columns.first == low.first ? 0 : low.count;
+      const auto linear = jacobian_.block(6 * number, columns.first, 3, columns.count),
+                 angular = jacobian_.block(6 * number + 3, columns.first, 3, columns.count);
+      auto of_point = point_jacobian_.middleCols(at, columns.count);
+      of_point += sign * linear - (sign * cross_matrix(vector(arm))).lazyProduct(angular);
+      if (row.tilts) of_point += (sign * n * tilt.transpose()).lazyProduct(angular);
+      spin_jacobian_.segment(at, columns.count) += (sign * n.transpose()).lazyProduct(angular);
     };
-    add(row.b, row.arm, 1.0);
-    if (row.a != SpringContact::kNone) add(row.a, row.arm_a, -1.0);
+    add(row.b, b, row.arm, 1.0);
+    if (has(row.a)) add(row.a, a, row.arm_a, -1.0);
     const Matrix3 slope = step_ * point_slope(row).matrix();
     point_product_ = slope.lazyProduct(point_jacobian_);
-    lower += point_jacobian_.transpose().lazyProduct(point_product_);
-    if (response.torque_slope > 0.0)
-      lower += (step_ * response.torque_slope * spin_jacobian_.transpose()).lazyProduct(spin_jacobian_);
+    const auto entry = [&](Eigen::Index i) {
+      return i < low.count ? low.first + i : high.first + (i - low.count);
+    };
+    for (Eigen::Index j = 0; j < count; ++j)
+      for (Eigen::Index i = j; i < count; ++i)
+        hessian_(entry(i), entry(j)) += point_jacobian_.col(i).dot(point_product_.col(j)) +
+                                        step_ * response.torque_slope * spin_jacobian_[i] * spin_jacobian_[j];
   }
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);

@@ -114,7 +114,7 @@ class IslandProblem {
     int held_iterations = 60;  // after each renewal
     int unchecked = 2;        // first iterations without a line search: exact while no contact opens or slips
     bool anew = true;         // true if held limits restart from the start of the step, not the last iterate
-    int trials = 20;          // per line search
+    int trials = 50;          // per line search
     double converged = 1e-7;  // largest error of a solution, over scale()
   };
 
@@ -180,7 +180,12 @@ class IslandProblem {
   const Scene* scene_ = nullptr;
   std::vector<Unknown> unknowns_;
   std::vector<JointLaw> laws_;  // by unknown; used for joints
-  Matrix jacobian_;             // of the bodies by the unknowns
+  /// Those unknowns that move a body.
+  struct Columns {
+    Eigen::Index first, count;
+  };
+  std::vector<Columns> columns_;  // by body
+  Matrix jacobian_;               // of the bodies by the unknowns
   PointJacobian point_jacobian_, point_product_;
   Eigen::RowVectorXd spin_jacobian_;
   Eigen::LLT<Matrix> mass_factors_;

@@ -16,6 +16,8 @@
 namespace mrhi {
 namespace {
 
+/// A line search bisects after so many trials: friction of a very light body is almost a leap.
+constexpr int kSecants = 20;
 /// A line search ends at this ratio of the energy's slope to that at its start.
 constexpr double kSlopeTolerance = 0.01;
 /// Convergence is fast if a step reduces the error below this ratio: the Hessian hardly changes there.
@@ -107,7 +109,7 @@ void IslandProblem::search_line(double slope_at_start) {
   double high_slope = descent();
   for (int i = 0; i < effort_.trials && high_slope > 0.0; ++i) {
     const double secant = low - low_slope * (high - low) / (high_slope - low_slope);
-    const double next = i % 3 == 2 ? 0.5 * (low + high) : secant;
+    const double next = i % 3 == 2 || i >= kSecants ? 0.5 * (low + high) : secant;
     velocity_ += (next - part) * direction_;
     part = next;
     evaluate(false);
