@@ -22,7 +22,7 @@ struct MeshFile {
 /// The limits of a scene's meshes together; load_meshes() subtracts what it uses.
 struct MeshBudget {
   std::size_t triangles = 1'000'000;
-  double seconds = 40.0;  ///< of real time; 20 s for each child process
+  double seconds = 40.0;  ///< of processor time; each child process has 20 s of real time
 };
 
 /// All triangles of a file, with coincident vertices joined; or the reason why it cannot be used.

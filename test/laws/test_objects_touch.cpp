@@ -273,7 +273,8 @@ TEST(ObjectsTouch, a_tower_of_twenty_cubes_stands_in_steps_of_1_and_8_ms) {
   for (int i = 0; i < 20; ++i)
     bodies.push_back(placed(with(box_body(Vector3::Constant(0.05), 0.1), 0.3, 0.8),
                             "cube" + std::to_string(i), Vector3(0, 0, 0.025 + 0.05 * i)));
-  // Springs of 1e7 N/m give by 2 um under 20 cubes; the rest is the solver's tolerance, 0.02 mm/s in long steps.
+  // Springs of 1e7 N/m give by 2 um under 20 cubes; the rest is the solver's tolerance, 0.02 mm/s in long
+  // steps.
   for (const double step : {0.001, 1.0 / 120.0}) EXPECT_LT(farthest_move(bodies, step), 3e-4) << step;
 }
 

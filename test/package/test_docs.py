@@ -10,7 +10,8 @@ PAGES = sorted(glob.glob(os.path.join(PACKAGE, "docs", "*.md"))) + [os.path.join
                                                                     for name in ("README.md", "CONTRIBUTING.md")]
 SHELF = os.path.join(PACKAGE, "docs", "README.md")
 MAX_README_WORDS = 1500  # more is not read before the first try
-MAX_PAGES, MAX_WORDS = 16, 25000  # of docs/, without its index: more is not found, and not read
+MAX_PAGES, MAX_WORDS = 16, 21000  # of docs/: more is not found, and not read. Without measured figures, which are looked up
+FIGURE = re.compile(r"<!-- figure \w+/\w+ -->.*?<!-- /figure -->", re.DOTALL)
 
 
 def text_of(page):
@@ -59,7 +60,7 @@ class DocsTest(unittest.TestCase):
     def test_the_pages_are_few_and_short(self):
         pages = [page for page in PAGES[:-2] if page != SHELF]
         self.assertLessEqual(len(pages), MAX_PAGES)
-        self.assertLessEqual(sum(len(text_of(page).split()) for page in PAGES[:-2]), MAX_WORDS,
+        self.assertLessEqual(sum(len(FIGURE.sub("", text_of(page)).split()) for page in PAGES[:-2]), MAX_WORDS,
                              "say a thing once, and link to it")
 
 
