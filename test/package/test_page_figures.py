@@ -101,7 +101,7 @@ class TestCaptures(unittest.TestCase):
         rows = ["none,rigid hand,all,,2,1,0,1,0.6,0.4,0,0.5,0.7,0.3,0.5,2"] + [
             "ours,implicit,%s,1,2,1,0,1,%s,0.5,17.7,0.6,0.8,0.4,0.6,2" % row
             for row in (("all", 0.7), ("person s1", 0.65), ("person s2", 0.75), ("object box", 0.7))] + [
-                "ours,implicit,all,0.3,2,1,0,1,0.61,0.5,17.7,0.6,0.8,0.4,0.6,2"]
+                "ours,implicit,all,%s,2,1,0,1,0.61,0.5,17.7,0.6,0.8,0.4,0.6,2" % lead for lead in grasps.LEADS[1:]]
         for name, lines in (("windows.csv", ["window,seconds,mass_kg,set,person,object", "s1_box_use_01_3,1,1,artigrasp,s1,box",
                                              "s2_notebook_use_02_7,1,1,artigrasp,s2,box"]), ("real_grasps_arctic.csv", [head] + rows)):
             with open(os.path.join(root, name), "w", encoding="utf-8") as file:
@@ -117,7 +117,7 @@ class TestCaptures(unittest.TestCase):
                          "40 % (40 to 40) and 20 % (20 to 20) in the other 1")
         self.assertEqual(figures["settings"], "assist alone 70 % and 50 %, 18 N; `rigid` 60 % and 40 %")
         self.assertEqual((figures["person"], figures["object"]), ("s2 75 % (60 to 80), s1 65 % (60 to 80)", "box 70 % (60 to 80)"))
-        self.assertEqual(figures["short_lead"], "61 % (60 to 80) and 50 % (40 to 60)")
+        self.assertEqual(figures["leads"], "; ".join(lead + " 61 % (60 to 80) and 50 % (40 to 60)" for lead in ("0.3 s", "3 s", "10 s", "clear")))
 
 
 class TestRecordings(unittest.TestCase):
