@@ -200,7 +200,7 @@ void IslandProblem::factorise_joints() {
     const SpringResponse& response = row.response;
     if (response.normal_slope <= 0.0 && response.tangential_slope <= 0.0) continue;
     const Vector3 n = vector(row.spring.normal), tilt = vector(row.tilt);
-    const auto has = [&row](int number) { return number != SpringContact::kNone; };
+    const auto has = [](int number) { return number != SpringContact::kNone; };
     // Of the unknowns only those of the two bodies, or of their linkages, move the point.
     const Columns b = columns_[static_cast<std::size_t>(row.b)],
                   a = has(row.a) ? columns_[static_cast<std::size_t>(row.a)] : b;

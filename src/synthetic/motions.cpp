@@ -20,17 +20,17 @@ void release(Script& script, const GraspPostures& postures, const Pose& at, cons
 }
 
 /// A hand that grasps an object, moves it and releases it.
-class Grip {
+class GraspScript {
  public:
   /// Continues `script`.
-  Grip(Script script, const Grasp& grasp, const Vector3& place)
+  GraspScript(Script script, const Grasp& grasp, const Vector3& place)
       : script_(std::move(script)),
         postures_(grasp),
         retreat_(grasp.retreat),
         at_(Pose{place, Quaternion::Identity()} * grasp.wrist) {}
 
   /// Approaches from `aside` of a point straight in front of the object, at `distance` [m] and `speed` [m/s].
-  Grip& take(const Vector3& aside, double distance = 0.08, double speed = 0.1) {
+  GraspScript& take(const Vector3& aside, double distance = 0.08, double speed = 0.1) {
     const Pose before = shifted(at_, distance * retreat_);
     if (script_.motion().keyframes.empty()) script_.then(0.0, shifted(before, aside), relaxed_posture());
     script_.then(0.9, before, postures_.open, -speed * retreat_).then(0.8, at_, postures_.open);
@@ -38,16 +38,16 @@ class Grip {
     script_.by_way_of(postures_.touching, postures_.touching_share);
     return *this;
   }
-  Grip& hold(double duration) {
+  GraspScript& hold(double duration) {
     script_.hold(duration);
     return *this;
   }
-  Grip& slide(double duration, const Vector3& by) {
+  GraspScript& slide(double duration, const Vector3& by) {
     at_ = shifted(at_, by);
     script_.then(duration, at_, postures_.pressing);
     return *this;
   }
-  Grip& turn_about(double duration, const Vector3& centre, const Quaternion& by) {
+  GraspScript& turn_about(double duration, const Vector3& centre, const Quaternion& by) {
     at_ = {centre + by * (at_.position - centre), by * at_.orientation};
     retreat_ = by * retreat_;
     script_.then(duration, at_, postures_.pressing).round(centre);
@@ -282,7 +282,7 @@ ScriptedMotion open_hatch() {
   script.then(0.0, shifted(touching({-0.09, 0.02, 0.30}, -Vector3::UnitY()), kBeside), relaxed_posture());
   turn_latch(script, {-0.13, 0.123, 0.33}, 1.0);
   turn_latch(script, {-0.13, 0.123, 0.17}, -1.0);
-  return Grip(script, bar_grasp(0.012), {-0.07, 0.10, 0.25})
+  return GraspScript(script, bar_grasp(0.012), {-0.07, 0.10, 0.25})
       .take(kBeside)
       .hold(0.3)
       .turn_about(2.4, hinge, turn(60.0, Vector3::UnitZ()))
@@ -295,7 +295,7 @@ ScriptedMotion squeeze_tongs() {
   const Pose at = Pose{scene_object(), Quaternion::Identity()} * open_grasp.wrist;
   const Pose before = shifted(at, kApproachLength * open_grasp.retreat);
   const Vector3 aside(0.05, -kAside, 0.02);
-  Grip grip(Script("tongs"), open_grasp, scene_object());
+  GraspScript grip(Script("tongs"), open_grasp, scene_object());
   const GraspPostures& open = grip.take(aside, kApproachLength, 0.15).postures();
   Script& script = grip.script();
   for (int squeeze = 0; squeeze < 2; ++squeeze)
@@ -342,7 +342,7 @@ const MotionEntry kMotions[] = {
     {"turn_valve",
      [] {
        const Vector3 axle(0.01, 0.12, 0.34);
-       Grip grip(Script("panel"), bar_grasp(0.014), axle + Vector3(0.0, 0.0, 0.031));
+       GraspScript grip(Script("panel"), bar_grasp(0.014), axle + Vector3(0.0, 0.0, 0.031));
        return grip.take(kBeside)
            .hold(0.3)
            .turn_about(1.6, axle, turn(60.0, Vector3::UnitY()))
@@ -354,12 +354,12 @@ const MotionEntry kMotions[] = {
      }},
     {"open_drawer",
      [] {
-       Grip grip(Script("panel"), rail_grasp(0.012), {-0.13, 0.10, 0.15});
+       GraspScript grip(Script("panel"), rail_grasp(0.012), {-0.13, 0.10, 0.15});
        return grip.take({0.0, -0.08, 0.0}).hold(0.3).slide(1.6, {0.0, -0.12, 0.0}).let_go({0.0, -0.03, 0.0});
      }},
     {"open_door",
      [] {
-       Grip grip(Script("panel"), bar_grasp(0.012), {0.075, 0.10, 0.17});
+       GraspScript grip(Script("panel"), bar_grasp(0.012), {0.075, 0.10, 0.17});
        grip.take(kBeside).hold(0.3).turn_about(2.0, {0.2, 0.14, 0.17}, turn(60.0, Vector3::UnitZ()));
        return grip.let_go({0.0, -0.03, 0.0});
      }},
@@ -370,7 +370,7 @@ const MotionEntry kMotions[] = {
 
 ScriptedMotion reach_and_carry(const char* scene, const Grasp& grasp, const Vector3& object,
                                const Vector3& aside) {
-  Grip grip(Script(scene), grasp, object);
+  GraspScript grip(Script(scene), grasp, object);
   grip.take(aside, kApproachLength, 0.15).hold(0.4);
   carry_and_release(grip.script(), grasp, grip.postures(), object,
                     {{0.0, 0.0, 0.08}, turn(25.0, Vector3::UnitZ())}, aside);
