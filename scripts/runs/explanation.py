@@ -65,16 +65,16 @@ def as_json(story):
 
 
 def _loss(loss):
-    told = {'object': loss.object, 'hand_id': loss.hand_id, 'grasped': loss.grasped, 'from': loss.start, 'until': loss.until,
+    fields = {'object': loss.object, 'hand_id': loss.hand_id, 'grasped': loss.grasped, 'from': loss.start, 'until': loss.until,
             'cause': loss.cause, 'push': loss.push, 'load': loss.load, 'friction': loss.friction,
             'friction_needed': loss.friction_needed, 'push_needed': loss.push_needed}
     if loss.opened is not None:
-        told['opened'] = loss.opened
+        fields['opened'] = loss.opened
     if loss.by:
-        told['by'] = loss.by
+        fields['by'] = loss.by
     if loss.assistance:
-        told['assist'] = loss.assistance._asdict()
-    return dict(told, text=loss.text, grasp_end=loss.grasp_end)
+        fields['assist'] = loss.assistance._asdict()
+    return dict(fields, text=loss.text, grasp_end=loss.grasp_end)
 
 
 def _object(thing):

@@ -194,15 +194,18 @@ void ImpactSolver::resolve(ContactStep& step, const Island& island, ImpactFricti
 void ImpactSolver::collect_in_joints(ContactStep& step, const Island& island,
                                      const std::vector<JointState>& joints) {
   points_.clear();
+  const auto add_point = [&](int number, const Vector3& arm, double sign) {
+    const IslandProblem::Columns& of = problem_->columns_of(number);
+    problem_->add_point_jacobian(number, arm, sign,
+                                 coordinates_[points_.size()].jacobian.middleCols(of.first, of.count));
+  };
   for (const IslandBody& body : island.bodies) {
     for (std::size_t i = body.first; i < body.last; ++i) {
       Contact& contact = step.contacts[i];
       if (contact.ignored || contact.struck) continue;
       ImpactPoint point = point_in_joints(contact.normal, -contact.depth);
       set_hand(contact, point);
-      problem_->add_point_jacobian(island.place_of(body.body),
-                                   contact.point - step.bodies[body.body].pose.position, 1.0,
-                                   coordinates_[points_.size()].jacobian);
+      add_point(island.place_of(body.body), contact.point - step.bodies[body.body].pose.position, 1.0);
       Material material = step.scene.bodies[body.body].material;
       material.restitution = contact.restitution.value_or(material.restitution);
       if (add_in_joints(step.step, point, material)) contact.time_of_impact = points_.back().time;
@@ -213,10 +216,9 @@ void ImpactSolver::collect_in_joints(ContactStep& step, const Island& island,
     if (contact.struck) continue;
     ImpactPoint point = point_in_joints(contact.normal, contact.first_touch >= 0.0 ? 0.0 : -contact.depth);
     point.between = &contact, point.total = &contact.impulse, point.struck = &contact.struck;
-    auto& jacobian = coordinates_[points_.size()].jacobian;
-    problem_->add_point_jacobian(island.place_of(contact.key.b), contact.arm_b, 1.0, jacobian);
+    add_point(island.place_of(contact.key.b), contact.arm_b, 1.0);
     if (!step.scene.bodies[contact.key.a].fixed)
-      problem_->add_point_jacobian(island.place_of(contact.key.a), contact.arm_a, -1.0, jacobian);
+      add_point(island.place_of(contact.key.a), contact.arm_a, -1.0);
     add_in_joints(step.step, point, contact.material);
   }
   for (Eigen::Index unknown = 0; unknown < velocity_.size(); ++unknown) {

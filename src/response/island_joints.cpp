@@ -187,9 +187,11 @@ double IslandProblem::joint_energy() const {
 
 /// c' = v + w x r = (J_v - [r]x J_w) u
 void IslandProblem::add_point_jacobian(int number, const Vector3& arm, double sign,
-                                       PointJacobian& jacobian) const {
-  const auto linear = jacobian_.middleRows<3>(6 * number), angular = jacobian_.middleRows<3>(6 * number + 3);
-  jacobian += sign * linear - (sign * cross_matrix(arm)).lazyProduct(angular);
+                                       Eigen::Ref<PointJacobian> own) const {
+  const Columns& of = columns_of(number);
+  const auto linear = jacobian_.block(6 * number, of.first, 3, of.count),
+             angular = jacobian_.block(6 * number + 3, of.first, 3, of.count);
+  own += sign * linear - (sign * cross_matrix(arm)).lazyProduct(angular);
 }
 
 /// H = M + h sum (J_c' S J_c + s_T j_c' j_c) - h dt/du, with J_c and j_c the Jacobians of a row's relative
@@ -202,18 +204,16 @@ void IslandProblem::factorise_joints() {
     const Vector3 n = vector(row.spring.normal), tilt = vector(row.tilt);
     const auto has = [](int number) { return number != SpringContact::kNone; };
     // Of the unknowns only those of the two bodies, or of their linkages, move the point.
-    const Columns b = columns_[static_cast<std::size_t>(row.b)],
-                  a = has(row.a) ? columns_[static_cast<std::size_t>(row.a)] : b;
+    const Columns b = columns_of(row.b), a = has(row.a) ? columns_of(row.a) : b;
     const Columns &low = a.first < b.first ? a : b, &high = a.first < b.first ? b : a;
     const Eigen::Index count = low.count + (low.first == high.first ? 0 : high.count);
     point_jacobian_.setZero(3, count);
     spin_jacobian_.setZero(count);
     const auto add = [&](int number, const Columns& columns, const Triple& arm, double sign) {
       const Eigen::Index at = columns.first == low.first ? 0 : low.count;
-      const auto linear = jacobian_.block(6 * number, columns.first, 3, columns.count),
-                 angular = jacobian_.block(6 * number + 3, columns.first, 3, columns.count);
+      const auto angular = jacobian_.block(6 * number + 3, columns.first, 3, columns.count);
       auto of_point = point_jacobian_.middleCols(at, columns.count);
-      of_point += sign * linear - (sign * cross_matrix(vector(arm))).lazyProduct(angular);
+      add_point_jacobian(number, vector(arm), sign, of_point);
       if (row.tilts) of_point += (sign * n * tilt.transpose()).lazyProduct(angular);
       spin_jacobian_.segment(at, columns.count) += (sign * n.transpose()).lazyProduct(angular);
     };

@@ -77,8 +77,13 @@ class IslandProblem {
   void start_with(const Vector& velocity, const ContactStep& step, const std::vector<JointState>& joints);
   const Vector& start() const { return start_; }
   const Vector& joint_velocity() const { return velocity_; }
-  /// Adds `sign` times the Jacobian of the point of body `number` at `arm`.
-  void add_point_jacobian(int number, const Vector3& arm, double sign, PointJacobian& jacobian) const;
+  /// The unknowns that move a body.
+  struct Columns {
+    Eigen::Index first, count;
+  };
+  const Columns& columns_of(int number) const { return columns_[static_cast<std::size_t>(number)]; }
+  /// Adds `sign` times the Jacobian of the point of body `number` at `arm`, to the body's own columns.
+  void add_point_jacobian(int number, const Vector3& arm, double sign, Eigen::Ref<PointJacobian> own) const;
   /// Joint whose velocity an unknown is, as an index in Scene::joints; -1 for a body without a joint.
   int joint_of(Eigen::Index unknown) const { return unknowns_[static_cast<std::size_t>(unknown)].joint; }
   void note_limit_impulse(Eigen::Index joint, double impulse) {
@@ -179,11 +184,7 @@ class IslandProblem {
   double usual_ = 0.0, carried_ = 0.0;
   const Scene* scene_ = nullptr;
   std::vector<Unknown> unknowns_;
-  std::vector<JointLaw> laws_;  // by unknown; used for joints
-  /// Those unknowns that move a body.
-  struct Columns {
-    Eigen::Index first, count;
-  };
+  std::vector<JointLaw> laws_;    // by unknown; used for joints
   std::vector<Columns> columns_;  // by body
   Matrix jacobian_;               // of the bodies by the unknowns
   PointJacobian point_jacobian_, point_product_;

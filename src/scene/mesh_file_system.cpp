@@ -21,6 +21,13 @@ bool is_below(const fs::path& folder, const fs::path& file) {
 
 }  // namespace
 
+std::string why_too_large(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  if (error || size <= kMaxMeshBytes) return "";
+  return "has " + std::to_string(size) + " bytes; allowed: at most " + std::to_string(kMaxMeshBytes);
+}
+
 MeshFileSystem::MeshFileSystem(const std::string& mesh_file) : mesh_(plain(mesh_file)) {
   std::error_code ignored;
   folders_ = {fs::weakly_canonical(mesh_.parent_path(), ignored),
@@ -53,10 +60,7 @@ std::string MeshFileSystem::why_refused(const fs::path& file) const {
     return "is not in the mesh's folder; allowed: files in or below that folder";
   const std::string why = why_unreadable(file.string());
   if (!why.empty()) return why + "; allowed: a file that may be read";
-  const std::uintmax_t size = fs::file_size(file, error);
-  if (error || size > kMaxMeshBytes)
-    return "has " + std::to_string(size) + " bytes; allowed: at most " + std::to_string(kMaxMeshBytes);
-  return "";
+  return why_too_large(file);
 }
 
 }  // namespace mrhi

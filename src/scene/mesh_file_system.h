@@ -10,6 +10,9 @@ namespace mrhi {
 
 constexpr std::uintmax_t kMaxMeshBytes = 64u << 20;  ///< of a mesh file, and of each file that it names
 
+/// Reason why a file is too large; empty: it is not, or it is not there.
+std::string why_too_large(const std::filesystem::path& file);
+
 /// File system of assimp for one mesh, which may name other files: a glTF's buffers, an OBJ's materials.
 /// Opens only regular files in or below the mesh's own folder, as other files are not the mesh's to publish.
 class MeshFileSystem : public Assimp::DefaultIOSystem {

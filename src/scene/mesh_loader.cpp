@@ -88,11 +88,8 @@ void check_file(const std::string& file) {
   if (std::find(kFormats.begin(), kFormats.end(), extension) == kFormats.end())
     throw std::runtime_error("is of the format " + text::quoted(extension, 20) +
                              "; allowed: " + text::joined(kFormats));
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (!error && size > kMaxMeshBytes)
-    throw std::runtime_error("has " + std::to_string(size) + " bytes; allowed: at most " +
-                             std::to_string(kMaxMeshBytes));
+  const std::string why = why_too_large(file);
+  if (!why.empty()) throw std::runtime_error(why);
   if (file_text(file, pointer.size()) == pointer)
     throw std::runtime_error(
         "is a pointer of Git LFS; allowed: the file itself, that 'git lfs pull' fetches");
@@ -338,23 +335,27 @@ double processor_time_of_children() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+/// Subtracts the processor time of the children that end in its life [s].
+class Spending {
+ public:
+  explicit Spending(double& seconds) : seconds_(seconds) {}
+  Spending(const Spending&) = delete;
+  ~Spending() { seconds_ -= processor_time_of_children() - begin_; }
+
+ private:
+  double& seconds_;
+  const double begin_ = processor_time_of_children();
+};
+
 std::vector<LoadedMesh> read_in_child(const std::vector<MeshFile>& files, MeshBudget& budget,
                                       const std::function<bool()>& is_cancelled) {
   ChildLimits limits = kLimits;
   limits.seconds = std::min(limits.seconds, budget.seconds);
   if (limits.seconds <= 0.0)
     throw std::runtime_error("is one too many: the scene's meshes take more time than is allowed in all");
-  const double begin = processor_time_of_children();
-  const auto spend = [&] { budget.seconds -= processor_time_of_children() - begin; };
-  std::string bytes;
-  try {
-    bytes = run_in_child(
-        limits, [&] { return read_all(files, budget); }, is_cancelled);
-  } catch (const std::runtime_error&) {
-    spend();
-    throw;
-  }
-  spend();
+  const Spending spending(budget.seconds);
+  const std::string bytes = run_in_child(
+      limits, [&] { return read_all(files, budget); }, is_cancelled);
   std::size_t at = 0;
   std::string triangles, flat;
   take(bytes, at, triangles);

@@ -236,48 +236,6 @@ TEST(ObjectsTouch, a_stack_of_three_cubes_stands_for_a_minute) {
   }
 }
 
-/// A scene that stands from its start: how far a body moves at most in 5 s; energy never rises.
-double farthest_move(const std::vector<Body>& bodies, double step) {
-  Objects scene(of(bodies, kGravity), step);
-  const auto energy = [&] {
-    double sum = scene.energy();
-    for (std::size_t b = 1; b < bodies.size(); ++b)
-      sum += bodies[b].mass * kGravity * scene.state(b).pose.position.z();
-    return sum;
-  };
-  const double begun = energy();
-  double farthest = 0.0;
-  scene.run(5.0, [&] {
-    EXPECT_LE(energy(), begun * (1.0 + 1e-9));
-    for (std::size_t b = 1; b < bodies.size(); ++b)
-      farthest = std::max(farthest, (scene.state(b).pose.position - bodies[b].start.position).norm());
-  });
-  return farthest;
-}
-
-// With sweeps cut short as in a heap the lower one was pushed out, by 4 to 18 cm.
-TEST(ObjectsTouch, a_body_stands_on_one_of_a_hundredth_and_a_five_hundredth_of_its_mass) {
-  for (const auto& [light, step] :
-       {std::pair(0.002, 0.001), std::pair(0.007, 0.004), std::pair(0.01, 1.0 / 120.0)}) {
-    const Body below =
-        placed(with(box_body(Vector3::Constant(0.05), light), 0.3, 0.8), "light", {0, 0, 0.0251});
-    const Body above =
-        placed(with(box_body(Vector3::Constant(0.05), 1.0), 0.3, 0.8), "heavy", {0, 0, 0.0753});
-    // It falls through two gaps of 0.1 mm, and bounces.
-    EXPECT_LT(farthest_move({floor_block(0.8), below, above}, step), 0.001) << light;
-  }
-}
-
-TEST(ObjectsTouch, a_tower_of_twenty_cubes_stands_in_steps_of_1_and_8_ms) {
-  std::vector<Body> bodies{floor_block(0.8)};
-  for (int i = 0; i < 20; ++i)
-    bodies.push_back(placed(with(box_body(Vector3::Constant(0.05), 0.1), 0.3, 0.8),
-                            "cube" + std::to_string(i), Vector3(0, 0, 0.025 + 0.05 * i)));
-  // Springs of 1e7 N/m give by 2 um under 20 cubes; the rest is the solver's tolerance, 0.02 mm/s in long
-  // steps.
-  for (const double step : {0.001, 1.0 / 120.0}) EXPECT_LT(farthest_move(bodies, step), 3e-4) << step;
-}
-
 // The springs of a milligram are so stiff beside it that friction is a leap: a search along it that was cut
 // short let this cube leave at 0.66 m/s.
 TEST(ObjectsTouch, a_cube_of_a_millimetre_gains_no_energy_as_it_lands) {
