@@ -43,5 +43,5 @@ def soak():
 
 RECIPES = {
     'latency': Recipe('4 minutes, idle', ['src/nodes', 'src/ros', 'benchmark/latency'], latency),
-    'soak': Recipe('10 minutes', [*CORE, 'benchmark/soak.cpp'], soak),
+    'soak': Recipe('15 minutes', [*CORE, 'benchmark/soak.cpp'], soak),
 }
