@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 
 namespace mrhi {
@@ -14,6 +15,9 @@ using Quaternion = Eigen::Quaterniond;
 using Nanoseconds = std::int64_t;
 inline double to_seconds(Nanoseconds time) {
   return 1e-9 * static_cast<double>(time);
+}
+inline Nanoseconds to_nanoseconds(double seconds) {
+  return static_cast<Nanoseconds>(std::llround(1e9 * seconds));
 }
 
 /// Rigid transform; maps a point of the local frame to the parent frame.

@@ -20,9 +20,29 @@ constexpr double kReleaseSpeed = 0.1;
 /// Largest number of bodies that are solved without a bound on effort.
 constexpr std::size_t kMaxUnboundedBodies = 4;
 
+/// Number of unknowns from which sparse factors are cheaper.
+constexpr Eigen::Index kSparseUnknowns = 100;
+
 constexpr int kNoJoint = -1;
 
 }  // namespace
+
+void Factors::compute(const Eigen::MatrixXd& matrix) {
+  sparse_ = matrix.rows() >= kSparseUnknowns;
+  if (sparse_) {
+    ordered_.compute(matrix.sparseView());
+  } else {
+    dense_.compute(matrix);
+  }
+}
+
+void Factors::solve_in_place(Eigen::VectorXd& right_hand_side) const {
+  if (sparse_) {
+    right_hand_side = ordered_.solve(right_hand_side).eval();
+  } else {
+    dense_.solveInPlace(right_hand_side);
+  }
+}
 
 // u0 = M^-1 sum J_b' p_b projects the bodies' momenta onto the joints. The remainder is the joints' reaction,
 // not an error of this step. u* = u0 + h M^-1 J' m g.
@@ -73,11 +93,12 @@ void IslandProblem::number_unknowns(const ContactStep& step, const Island& islan
   for (const IslandBody& body : island.bodies) count += step.scene.bodies[body.body].flies ? 6 : 0;
   const auto rows = static_cast<Eigen::Index>(6 * island.bodies.size());
   jacobian_.setZero(rows, count);
-  body_impulse_.resize(rows);
+  for (Vector* vector : {&body_velocity_, &body_impulse_}) vector->resize(rows);
   mass_.setZero(count, count);
   for (Vector* vector : {&gradient_, &fall_, &weights_}) vector->setZero(count);
   for (Vector* vector : {&direction_, &change_, &momentum_}) vector->resize(count);
   unknowns_.clear();
+  mass_blocks_.clear();
   columns_.resize(island.bodies.size());
   for (std::size_t i = 0; i < linkages.size(); ++i) {
     if (has(linkages[i])) add_linkage(step, island, linkages[i], motions[i]);
@@ -97,6 +118,7 @@ void IslandProblem::add_linkage(const ContactStep& step, const Island& island, c
   const auto first = static_cast<Eigen::Index>(unknowns_.size());
   const Eigen::Index count = linkage.unknowns();
   mass_.block(first, first, count, count) = motion.mass();
+  mass_blocks_.push_back({first, count});
   auto momenta = gradient_.segment(first, count), fall = fall_.segment(first, count);
   for (int i = 0; i < motion.size(); ++i) {
     const LinkageBody& link = linkage.bodies[static_cast<std::size_t>(i)];
@@ -124,6 +146,7 @@ void IslandProblem::add_body_without_joint(const ContactStep& step, const Island
   const BodyState& state = step.bodies[index];
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
   columns_[static_cast<std::size_t>(island.place_of(index))] = {first, 6};
+  mass_blocks_.push_back({first, 6});
   jacobian_.block<6, 6>(6 * island.place_of(index), first).setIdentity();
   mass_.block<3, 3>(first, first).diagonal().setConstant(body.mass);
   mass_.block<3, 3>(first + 3, first + 3) = rotation * body.inertia * rotation.transpose();
@@ -164,13 +187,28 @@ void IslandProblem::start_with(const Vector& velocity, const ContactStep& step,
 /// scale: contact and joint forces, plus a little of the momentum, so that a relative error exists where no
 /// force acts.
 void IslandProblem::add_joint_forces() {
-  gradient_.noalias() += jacobian_.transpose() * body_impulse_;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(6 * i);
+    const auto [first, count] = columns_[i];
+    gradient_.segment(first, count).noalias() +=
+        jacobian_.block(row, first, 6, count).transpose() * body_impulse_.segment<6>(row);
+  }
   scale_ += kMomentumTolerance * carried_;
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     if (unknowns_[i].joint == kNoJoint) continue;
     const auto row = static_cast<Eigen::Index>(i);
     gradient_[row] -= step_ * laws_[i].force(velocity_[row]);
     scale_ += step_ * laws_[i].size(velocity_[row]) * std::sqrt(weights_[row]);
+  }
+}
+
+/// V = J u, by the unknowns that move each body.
+void IslandProblem::find_body_velocities() {
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(6 * i);
+    const auto [first, count] = columns_[i];
+    body_velocity_.segment<6>(row).noalias() =
+        jacobian_.block(row, first, 6, count) * velocity_.segment(first, count);
   }
 }
 
@@ -282,7 +320,7 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island,
     solve_mass(direction_);
     velocity_ -= direction_;
   }
-  body_velocity_.noalias() = jacobian_ * velocity_;
+  find_body_velocities();
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
     const std::size_t index = island.bodies.begin()[i].body;
     const auto row = static_cast<Eigen::Index>(6 * i);

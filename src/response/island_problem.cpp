@@ -240,7 +240,7 @@ void IslandProblem::begin_operator(const ContactStep& step, std::size_t body,
 /// needs no complementarity problem. It is convex as in Todorov (2014) and, with springs, Castro, Permenter &
 /// Han (2023).
 void IslandProblem::evaluate(bool renew_limits) {
-  if (in_joints_) body_velocity_.noalias() = jacobian_ * velocity_;
+  if (in_joints_) find_body_velocities();
   std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
   double load = 0.0;
   for (SpringContact& row : rows_) {
@@ -278,8 +278,15 @@ void IslandProblem::evaluate(bool renew_limits) {
 }
 
 void IslandProblem::multiply_mass(const Vector& by, Vector& result) const {
-  if (in_joints_ || coupled_) {
+  if (coupled_) {
     result.noalias() = mass_ * by;
+    return;
+  }
+  if (in_joints_) {
+    for (const Columns& block : mass_blocks_)
+      result.segment(block.first, block.count).noalias() =
+          mass_.block(block.first, block.first, block.count, block.count) *
+          by.segment(block.first, block.count);
     return;
   }
   result.head<3>() = one_.mass * by.head<3>();
@@ -311,7 +318,7 @@ void IslandProblem::factorise() {
 void IslandProblem::find_direction() {
   direction_ = -gradient_;
   if (in_joints_) {
-    factors_.solveInPlace(direction_);
+    factors_.solve_in_place(direction_);
   } else {
     direction_ = factors_of_one_.solve(direction_);
   }
@@ -327,7 +334,7 @@ double IslandProblem::error_squared() const {
 /// minimum is the step's solution (Kane, Marsden, Ortiz & West, Variational integrators, IJNME 49, 2000).
 /// Only a line search needs it.
 double IslandProblem::energy() {
-  if (in_joints_) body_velocity_.noalias() = jacobian_ * velocity_;
+  if (in_joints_) find_body_velocities();
   change_ = velocity_ - free_;
   multiply_mass(change_, momentum_);
   double sum = 0.5 * change_.dot(momentum_);

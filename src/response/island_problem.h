@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
 #include <array>
 #include <vector>
 
@@ -32,6 +33,19 @@ Symmetric3 point_slope(const SpringContact& row);
 /// Adds J' S J = -d (force, torque) / d (velocity, angular velocity) of a body on which the row acts at
 /// `arm`.
 void add_slope(const SpringContact& row, const Symmetric3& s, const Triple& arm, Lower6& sum);
+
+/// Cholesky factors of a positive definite matrix, by its lower triangle. Those of many unknowns are sparse:
+/// a row of an island's matrix has entries for the bodies that touch alone.
+class Factors {
+ public:
+  void compute(const Eigen::MatrixXd& matrix);
+  void solve_in_place(Eigen::VectorXd& right_hand_side) const;
+
+ private:
+  bool sparse_ = false;
+  Eigen::LLT<Eigen::MatrixXd> dense_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> ordered_;
+};
 
 /// The contact problem of one body, or of an island with joints, at the end of the step: M (u - u*) = h J'
 /// f(J u), with f the springs' forces and u* the velocities under gravity alone. The unknowns u are the
@@ -90,7 +104,7 @@ class IslandProblem {
     laws_[static_cast<std::size_t>(joint)].note_limit_impulse(impulse);
   }
   /// Multiplies by the inverse mass matrix, in place: momenta become velocities.
-  void solve_mass(Vector& momenta) const { mass_factors_.solveInPlace(momenta); }
+  void solve_mass(Vector& momenta) const { mass_factors_.solve_in_place(momenta); }
   /// True if anything but gravity acts or may act.
   bool acts() const { return acts_; }
   /// Scales the velocity of an inconsistent solution down to the energy that springs and hands can have
@@ -156,10 +170,14 @@ class IslandProblem {
   void add_linkage(const ContactStep& step, const Island& island, const Linkage& linkage,
                    LinkageMotion& motion);
   void add_body_without_joint(const ContactStep& step, const Island& island, std::size_t index);
+  void find_body_velocities();
   void add_joint_forces();
   double joint_energy() const;
   void factorise_joints();
-  double kinetic_energy(const Vector& velocity) const { return 0.5 * velocity.dot(mass_ * velocity); }
+  double kinetic_energy(const Vector& velocity) {
+    multiply_mass(velocity, momentum_);
+    return 0.5 * velocity.dot(momentum_);
+  }
 
   Effort effort_;
   double step_ = 0.0, scale_ = 0.0;
@@ -173,7 +191,7 @@ class IslandProblem {
   Vector change_, momentum_;
   Cholesky6 factors_of_one_;
   Matrix hessian_;
-  Eigen::LLT<Matrix> factors_;
+  Factors factors_;
 
   // One body solved with the operator whose hands act on it: velocities are relative to the operator.
   bool coupled_ = false;
@@ -184,12 +202,13 @@ class IslandProblem {
   double usual_ = 0.0, carried_ = 0.0;
   const Scene* scene_ = nullptr;
   std::vector<Unknown> unknowns_;
-  std::vector<JointLaw> laws_;    // by unknown; used for joints
-  std::vector<Columns> columns_;  // by body
-  Matrix jacobian_;               // of the bodies by the unknowns
+  std::vector<JointLaw> laws_;        // by unknown; used for joints
+  std::vector<Columns> columns_;      // by body
+  std::vector<Columns> mass_blocks_;  // unknowns of each linkage, and of each body without a joint
+  Matrix jacobian_;                   // of the bodies by the unknowns
   PointJacobian point_jacobian_, point_product_;
   Eigen::RowVectorXd spin_jacobian_;
-  Eigen::LLT<Matrix> mass_factors_;
+  Factors mass_factors_;
   Vector fall_, body_velocity_, body_impulse_;
 };
 

@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -41,6 +42,9 @@ class StampClock {
     paused_ = false;
   }
 
+  /// Leaves out time that was too long to simulate, like a pause.
+  void leave_out(Nanoseconds time) { pauses_ += time; }
+
   bool paused() const { return paused_; }
   /// Check of frames that continue from the last accepted one.
   StampCheck check() const {
@@ -60,6 +64,29 @@ class StampClock {
   bool paused_ = false;
   Nanoseconds pause_begin_ = 0;
   Nanoseconds pauses_ = 0;
+};
+
+/// Wall time that simulation costs, so that one call of a scene slower than real time stays short.
+class SimulationCost {
+ public:
+  void note(Nanoseconds simulated, ros::WallDuration wall) {
+    if (simulated <= 0) return;
+    const double cost = wall.toSec() / to_seconds(simulated);
+    if (calls_ == 0) last_.fill(cost);
+    last_[calls_++ % last_.size()] = cost;
+  }
+
+  /// Time that a call can simulate within kLongestCall. The cheapest of the last calls counts, as others may
+  /// have waited for a processor.
+  Nanoseconds affordable() const {
+    const double cost = *std::min_element(last_.begin(), last_.end());
+    return static_cast<Nanoseconds>(1e9 * std::min(kLongestCall / std::max(cost, 1e-9), 1e6));
+  }
+
+ private:
+  static constexpr double kLongestCall = 0.05;  // [s]: services wait for the frames before them
+  std::array<double, 4> last_{};                // wall time over simulated time
+  std::size_t calls_ = 0;
 };
 
 /// Detects jumps of ROS's clock. A jump is accepted once it persists: /clock may be of another time for a

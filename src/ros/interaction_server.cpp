@@ -145,13 +145,23 @@ struct InteractionServer::Impl {
       return diagnostics_.rejected("wrong frame",
                                    "'" + text::one_line(frame_id, 64) + "'; allowed: " + fixed_frame_);
     frame.stamp = clock_.to_simulation(stamp);
-    const Nanoseconds expected = clock_.to_simulation(clock_.stamp(ros::Time::now()));
-    const Rejection rejection = live_.simulation().begin(frame, expected);
+    Nanoseconds expected = clock_.to_simulation(clock_.stamp(ros::Time::now()));
+    const SimulationState& state = live_.simulation().state();
+    if (StampCheck(state.stamps).check(frame.stamp, state.time, expected) == StampVerdict::follows) {
+      const Nanoseconds left_out = leave_out_before(frame.stamp, 0);
+      frame.stamp -= left_out;
+      expected -= left_out;
+    }
+    Rejection rejection = Rejection::none;
+    measured([&] {
+      rejection = live_.simulation().begin(frame, expected);
+      if (rejection != Rejection::none) return;
+      while (timed_step()) results_.note_step();
+    });
     if (rejection != Rejection::none) {
       log_.frame(std::move(frame), frame_id, expected);
       return diagnostics_.rejected(to_string(rejection), std::to_string(to_seconds(stamp)) + " s");
     }
-    while (timed_step()) results_.note_step();
     results_.publish_response(live_.simulation().report());
     const FrameResult& result = live_.simulation().end();
     log_.frame(std::move(frame), frame_id, expected);
@@ -163,6 +173,42 @@ struct InteractionServer::Impl {
     diagnostics_.waited(seconds_between(arrival, now));
     diagnostics_.taken(to_seconds(from_ros_time(now) - stamp));
     clock_.take(stamp, now);
+    taken_ = ros::SteadyTime::now();
+  }
+
+  /// Notes what the simulation of `work` costs.
+  template <class Work>
+  void measured(Work work) {
+    const bool started = live_.simulation().state().started;
+    const Nanoseconds from = live_.simulation().time();
+    const ros::SteadyTime begin = ros::SteadyTime::now();
+    work();
+    if (started) cost_.note(live_.simulation().time() - from, ros::SteadyTime::now() - begin);
+  }
+
+  /// Leaves out time before `time` that is too long to simulate now; what comes a step after `earliest`
+  /// stays. Otherwise a scene slower than real time has ever more to simulate in a call. Returns the time
+  /// left out.
+  Nanoseconds leave_out_before(Nanoseconds time, Nanoseconds earliest) {
+    const Simulation& simulation = live_.simulation();
+    if (!simulation.state().started) return 0;
+    const Nanoseconds reached = std::max(simulation.time() + cost_.affordable(), earliest);
+    const Nanoseconds left_out = time - reached - to_nanoseconds(simulation.configuration().step);
+    if (left_out <= 0) return 0;
+    clock_.leave_out(left_out);
+    diagnostics_.rejected(
+        "slower than real time",
+        text::number(1e3 * to_seconds(left_out)) + " ms are left out; allowed: fewer bodies, longer steps");
+    return left_out;
+  }
+
+  /// Time up to which hands of the last frame stay where they are, once no frame has come for that long. In a
+  /// slow scene the last frame's stamp is old while others wait.
+  Nanoseconds end_of_hold() const {
+    const Simulation& simulation = live_.simulation();
+    const double hold = simulation.configuration().tracking.hold_time;
+    if ((ros::SteadyTime::now() - taken_).toSec() < hold) return 0;
+    return simulation.state().last_frame + to_nanoseconds(hold);
   }
 
   void note_lost(std::uint64_t frames) {
@@ -240,10 +286,13 @@ struct InteractionServer::Impl {
     if (clock_leaps_.look(from_ros_time(now))) return;
     const Nanoseconds stamp = clock_.stamp(now);
     const bool running = !clock_.paused() && live_.simulation().state().started;
-    const Nanoseconds until = clock_.to_simulation(stamp) - kSlack;
+    Nanoseconds until = clock_.to_simulation(stamp) - kSlack;
     const ros::WallDuration since = ros::SteadyTime::now() - results_.shown();
     ros::WallDuration next = kIdlePeriod;
-    if (running && live_.simulation().advance_without_hands(until)) {
+    if (running) until -= leave_out_before(until, end_of_hold());
+    bool advanced = false;
+    if (running) measured([&] { advanced = live_.simulation().advance_without_hands(until); });
+    if (advanced) {
       log_.without_hands(until);
       place_dragged();
       results_.publish(live_.simulation().result());
@@ -358,6 +407,8 @@ struct InteractionServer::Impl {
   std::string fixed_frame_;
   LiveSimulation live_;
   StampClock clock_;
+  SimulationCost cost_;
+  ros::SteadyTime taken_;  ///< when the last frame's results were sent
   ClockLeaps clock_leaps_;
   InputLog log_;
   StampCheck while_paused_;  ///< of frames during a pause; the simulation checks all others

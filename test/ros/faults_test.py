@@ -39,10 +39,26 @@ def start(package, kind, arguments, **options):
     return subprocess.Popen(roslib.packages.find_node(package, kind)[:1] + arguments, **options)
 
 
+def write_chains(path, chains=8, length=12):
+    """Pendulums of many links, whose steps take long."""
+    link = '<link name="%s"><inertial><mass value="0.1"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    joint = '<joint name="to_%s" type="continuous"><parent link="%s"/><child link="%s"/><axis xyz="0 1 0"/><origin xyz="%g %g 0"/></joint>'
+    parts = ['<link name="wall"/>']
+    for chain in range(chains):
+        parent = "wall"
+        for i in range(length):
+            name = "link_%d_%d" % (chain, i)
+            parts += [link % name, joint % (name, parent, name, 0.1 * (i > 0), 0.2 * chain * (i == 0))]
+            parent = name
+    with open(path, "w") as file:
+        file.write('<robot name="chains">%s</robot>' % "".join(parts))
+
+
 class Pipeline:
     """Context of all nodes from the tracker on, each in a process of its own."""
 
-    def __init__(self, master=None):
+    def __init__(self, master=None, interaction=()):
+        self.interaction = list(interaction)
         self.environment = dict(os.environ, ROS_MASTER_URI=master) if master else dict(os.environ)
         self.folder, self.processes = tempfile.mkdtemp(), {}
 
@@ -54,7 +70,8 @@ class Pipeline:
 
     def start(self, kind):
         with open(self.log(kind), "ab") as log:
-            self.processes[kind] = start("mr_hand_interaction", kind, NODES[kind], env=self.environment, stdout=log,
+            arguments = NODES[kind] + (self.interaction if kind == "interaction_node" else [])
+            self.processes[kind] = start("mr_hand_interaction", kind, arguments, env=self.environment, stdout=log,
                                          stderr=log)
 
     def log(self, kind):
@@ -183,6 +200,24 @@ class FaultsTest(unittest.TestCase):
             self.assertEqual(failures, [])
             self.assertEqual(pipeline.ended(), [])
             self.seen.wait_for_more("at last")
+
+    def test_a_scene_far_slower_than_real_time_keeps_answering_and_showing(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        scene = os.path.join(folder, "chains.urdf")
+        write_chains(scene)
+        # A second of these steps takes a core half a minute or more, so a frame that had to simulate all that has
+        # passed since the last would take 30 times the last one's time.
+        with Pipeline(interaction=["_scene:=" + scene, "_gravity:=[0, 0, -9.81]", "_step:=0.00001"]) as pipeline:
+            rospy.wait_for_service("interaction_node/set", TIMEOUT)
+            change = rospy.ServiceProxy("interaction_node/set", SetParameter)
+            wait_until(lambda: pipeline.said("interaction_node", "slower than real time"), "time to be left out")
+            for window in range(2, 6):
+                asked = time.monotonic()
+                self.assertTrue(change("filter/window", str(window)).success)
+                # Ten frames of 50 ms wait before it at most: the rest is room for a loaded machine.
+                self.assertLess(time.monotonic() - asked, 10.0)
+                self.seen.wait_for_more("in a slow scene")
 
     @staticmethod
     def works():
