@@ -6,7 +6,7 @@
 #include "../collision/closest_features.h"
 #include "contact_step.h"
 #include "impact.h"
-#include "penetration_force.h"
+#include "penetration_model.h"
 
 namespace mrhi {
 namespace {
@@ -123,19 +123,12 @@ class PadGrid {
   /// k_p is a pad's stiffness and l the distance between pads: a twist theta shears adjacent pads by l theta.
   /// The integration is explicit, so the stored values are bounded by what friction supports.
   void drag(const BodyState& state, Contact& contact) {
-    const Vector3 reach = contact.hand_point - contact.point;
-    stretch_ = reach - n_.dot(reach) * n_;
-    const Tangential deepest =
-        coulomb(stiffness_ * stretch_ + damping_ * slide_, hardest_, material_, contact.friction);
-    contact.friction = deepest.friction;
-    friction_ =
-        deepest.friction == Friction::sticking ? material_.static_friction : material_.dynamic_friction;
-    if (deepest.friction == Friction::slipping) {
-      const Vector3 kept = deepest.force / stiffness_;
-      contact.point += stretch_ - kept;
-      contact.god_object = state.pose.to_local(contact.point);
-      stretch_ = kept;
-    }
+    stretch_ = stretch_of(contact);
+    const Vector3 deepest =
+        tangential_force(material_, stiffness_, damping_ * slide_, hardest_, state, contact);
+    const bool sticks = contact.friction == Friction::sticking;
+    friction_ = sticks ? material_.static_friction : material_.dynamic_friction;
+    if (!sticks) stretch_ = deepest / stiffness_;
     // Beyond this twist the pads next to the centre slip too.
     const double max_twist = friction_ * hardest_ / (stiffness_ * SoftPadModel::kSpacing * contact.radius);
     contact.twist = std::clamp(contact.twist + step_ * spin_, -max_twist, max_twist);
@@ -152,7 +145,7 @@ class PadGrid {
   Vector3 act(bool fixed, BodyState& state) const {
     Vector3 sum = Vector3::Zero();
     for (int i = 0; i < count_; ++i) {
-      const Pad& pad = pads_[static_cast<std::size_t>(i)];
+      const Pad& pad = pads_[i];
       const Vector3 sheared = stretch_ + pad.offset - unturn_ * pad.offset;
       Vector3 force = stiffness_ * sheared + damping_ * (slide_ + spin_ * n_.cross(pad.offset));
       const double limit = friction_ * pad.normal_force, size = force.norm();
@@ -182,7 +175,7 @@ class PadGrid {
       const double depth = object.depth(point);
       if (depth <= 0.0) continue;
       const double normal_force = std::max(0.0, stiffness_ * depth - damping_ * normal_velocity_);
-      pads_[static_cast<std::size_t>(count_++)] = {offset, point + depth * n_, normal_force};
+      pads_[count_++] = {offset, point + depth * n_, normal_force};
       hardest_ = std::max(hardest_, normal_force);
     }
   }
@@ -221,10 +214,7 @@ void SoftPadModel::respond(ContactStep& step) {
   }
 }
 
-extern const ContactModelEntry soft_pad_model{
-    "soft_pad", 5, SoftPadModel::kStiffness,
-    [](const ContactConfiguration&) -> std::unique_ptr<ContactModel> {
-      return std::make_unique<SoftPadModel>();
-    }};
+extern const ContactModelEntry soft_pad_model{"soft_pad", 5, SoftPadModel::kStiffness,
+                                              make_model<SoftPadModel>};
 
 }  // namespace mrhi

@@ -3,7 +3,7 @@
 
 #include "contact_step.h"
 #include "impact.h"
-#include "penetration_force.h"
+#include "penetration_model.h"
 
 namespace mrhi {
 namespace {
@@ -48,17 +48,8 @@ Vector3 coupling_force(const Body& body, const BodyState& state, Contact& contac
   // back.
   const double load = std::max(0.0, stiffness * contact.depth - damping * normal_velocity);
 
-  const Vector3 reach = contact.hand_point - contact.point;
-  const Vector3 stretch = reach - n.dot(reach) * n;
   const Vector3 along = velocity - normal_velocity * n;
-  const Tangential tangential =
-      coulomb(stiffness * stretch + damping * along, load, body.material, contact.friction);
-  contact.friction = tangential.friction;
-  if (tangential.friction == Friction::slipping) {
-    contact.point += stretch - tangential.force / stiffness;
-    contact.god_object = state.pose.to_local(contact.point);
-  }
-  return tangential.force - load * n;
+  return tangential_force(body.material, stiffness, damping * along, load, state, contact) - load * n;
 }
 
 }  // namespace
@@ -75,10 +66,7 @@ void VirtualSpringModel::respond(ContactStep& step) {
   }
 }
 
-extern const ContactModelEntry virtual_spring_model{
-    "virtual_spring", 4, VirtualSpringModel::kStiffness,
-    [](const ContactConfiguration&) -> std::unique_ptr<ContactModel> {
-      return std::make_unique<VirtualSpringModel>();
-    }};
+extern const ContactModelEntry virtual_spring_model{"virtual_spring", 4, VirtualSpringModel::kStiffness,
+                                                    make_model<VirtualSpringModel>};
 
 }  // namespace mrhi
