@@ -13,10 +13,6 @@ namespace {
 /// impact.
 constexpr double kMargin = 0.001;
 
-Capsule to_local(const Pose& pose, const Capsule& capsule) {
-  return {pose.to_local(capsule.start), pose.to_local(capsule.end), capsule.radius};
-}
-
 }  // namespace
 
 ContactFinder::ContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity,
@@ -121,7 +117,8 @@ std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, co
   const auto separation = [&](double time) -> std::optional<Separation<ClosestFeatures>> {
     const Capsule then = pair.hand.capsule(pair.capsule, time);
     const Pose pose = moving.at(time);
-    const ClosestFeatures features = collider.closest(collider.to_shape(to_local(pose, then)), margin);
+    const Capsule in_body_then{pose.to_local(then.start), pose.to_local(then.end), then.radius};
+    const ClosestFeatures features = collider.closest(collider.to_shape(in_body_then), margin);
     if (features.distance > margin) return std::nullopt;
     const ClosestFeatures in_body = collider.to_body(features);
     const Vector3 normal = pose.orientation * in_body.normal;

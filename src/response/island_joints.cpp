@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "island_problem.h"
+#include "penetration_model.h"
 
 namespace mrhi {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 constexpr double kMomentumTolerance = 1e-6;
 /// Largest error, over scale(), at which the forces are a warm start of the next step.
 constexpr double kMaxWarmStartError = 0.01;
-/// Separation speed beyond which springs apply no force [m/s].
-constexpr double kReleaseSpeed = 0.1;
 /// Largest number of bodies that are solved without a bound on effort.
 constexpr std::size_t kMaxUnboundedBodies = 4;
 

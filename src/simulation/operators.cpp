@@ -215,14 +215,12 @@ Twist Operators::react(const ContactStep& step, int body) const {
 }
 
 void Operators::touch_fixtures(ContactStep& step, int body) {
+  step.bodies[body].pushed = Twist();
+  if (!touches_fixture_) return;
   on_fixtures_.clear();
-  std::size_t owner = 0;
-  if (!touches_fixture_) {
-    step.bodies[body].pushed = Twist();
-    return;
-  }
+  int owner = 0;
   for (Contact& contact : step.contacts) {
-    const auto o = static_cast<std::size_t>(owners_[contact.key.hand]);
+    const int o = owners_[contact.key.hand];
     if (contact.ignored || !scene_.bodies[contact.key.body].fixed || scene_.operators[o].body != body)
       continue;
     contact.force.setZero();
@@ -230,10 +228,8 @@ void Operators::touch_fixtures(ContactStep& step, int body) {
     on_fixtures_.push_back(&contact);
     owner = o;
   }
-  BodyState& state = step.bodies[body];
-  state.pushed = Twist();
   if (on_fixtures_.empty()) return;
-  problem_.begin_operator(step, static_cast<std::size_t>(body), on_fixtures_, carriers_[owner].twist);
+  problem_.begin_operator(step, body, on_fixtures_, carriers_[owner].twist);
   if (!problem_.solve()) problem_.evaluate(true);  // the velocity has moved on since
   if (problem_.scale() <= 0.0) return;
   problem_.finish_operator(step, on_fixtures_);
