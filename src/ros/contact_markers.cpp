@@ -28,16 +28,9 @@ constexpr double kHalfWidthImpulse = 0.02;  // impulse whose ring widens half as
 constexpr double kMaxGrowth = 0.03;         // largest growth of a ring's radius [m]
 constexpr double kBroad = 0.004;            // initial width of an impact's ring [m]
 
-enum FrictionState { kSticks, kSlips, kStruck, kFrictionStates };
-
-FrictionState friction_state(const Contact& contact) {
-  if (!contact.impulse.isZero(0.0)) return kStruck;
-  return contact.friction == Friction::sticking ? kSticks : kSlips;
-}
-
-std_msgs::ColorRGBA friction_color(FrictionState state, const PictureStyle& style) {
-  if (state == kStruck) return color(1.0, 1.0, 1.0);
-  return state == kSticks ? style.sticks : style.slips;
+std_msgs::ColorRGBA phase_color(ContactPhase phase, const PictureStyle& style) {
+  if (phase == ContactPhase::impulse) return color(1.0, 1.0, 1.0);
+  return phase == ContactPhase::sticking ? style.sticks : style.slips;
 }
 
 Pose on_surface(const Vector3& point, const Vector3& normal) {
@@ -45,17 +38,17 @@ Pose on_surface(const Vector3& point, const Vector3& normal) {
 }
 
 /// Rings of one colour, set at each vertex too; rviz would otherwise light them and leave their sides black.
-void add_rings(const std::vector<Contact>& contacts, FrictionState state, const PictureStyle& style,
+void add_rings(const std::vector<Contact>& contacts, ContactPhase of_phase, const PictureStyle& style, int id,
                const MarkerLayer& layer) {
+  const std_msgs::ColorRGBA paint = phase_color(of_phase, style);
   Marker* rings = nullptr;
   for (const Contact& contact : contacts) {
-    if (friction_state(contact) != state) continue;
-    if (!rings)
-      rings = &layer.add(state, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), friction_color(state, style));
+    if (phase(contact) != of_phase) continue;
+    if (!rings) rings = &layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), paint);
     add_ring({0.9 * contact.radius, 1.15 * contact.radius, 0.0, 1.0, kPieces},
              on_surface(contact.point, contact.normal), *rings);
   }
-  if (rings) rings->colors.resize(rings->points.size(), friction_color(state, style));
+  if (rings) rings->colors.resize(rings->points.size(), paint);
 }
 
 /// Distance from a body's centre of mass to its surface along a direction [m]; that to its bounding sphere
@@ -93,8 +86,7 @@ struct ForceMarkers {
     char text[32];
     std::snprintf(text, sizeof text, "%.1f N", newtons);
     numbers
-        .add(this_id, Marker::TEXT_VIEW_FACING,
-             {Vector3(outer + kNumberGap * outwards), Quaternion::Identity()}, Vector3::Constant(kLetters),
+        .add(this_id, Marker::TEXT_VIEW_FACING, {outer + kNumberGap * outwards}, Vector3::Constant(kLetters),
              paint)
         .text = text;
   }
@@ -109,27 +101,25 @@ std_msgs::ColorRGBA share_color(double share) {
   return color(mixed.x(), mixed.y(), mixed.z());
 }
 
-void add_shares(const Scene& scene, const FrameResult& result, const MarkerLayer& layer) {
-  Marker& balls =
-      layer.add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(2.0 * kPointSize), color(1.0, 1.0, 1.0));
-  for (const Contact& contact : result.contacts) {
-    const FrictionUse use = friction_use(contact, scene.bodies[contact.key.body].material);
-    balls.points.push_back(to_message(contact.point));
-    balls.colors.push_back(share_color(use.limit > 0.0 ? use.tangential / use.limit : 0.0));
-  }
-}
-
 }  // namespace
 
 void add_contacts(const Scene& scene, const FrameResult& result, const SimulationState& state,
                   const PictureStyle& style, const MarkerLayers& layers) {
   if (!result.contacts.empty()) {
-    Marker& points = layers.layer("contacts")
-                         .add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(kPointSize), style.contacts);
-    for (const Contact& contact : result.contacts) points.points.push_back(to_message(contact.point));
-    for (int kind = 0; kind < kFrictionStates; ++kind)
-      add_rings(result.contacts, static_cast<FrictionState>(kind), style, layers.layer("friction"));
-    add_shares(scene, result, layers.layer("share"));
+    const auto add_balls = [&](const char* name, double size, const std_msgs::ColorRGBA& paint) -> Marker& {
+      Marker& balls = layers.layer(name).add(0, Marker::SPHERE_LIST, Pose{}, Vector3::Constant(size), paint);
+      for (const Contact& contact : result.contacts) balls.points.push_back(to_message(contact.point));
+      return balls;
+    };
+    add_balls("contacts", kPointSize, style.contacts);
+    int id = 0;
+    for (const auto kind : {ContactPhase::sticking, ContactPhase::slipping, ContactPhase::impulse})
+      add_rings(result.contacts, kind, style, id++, layers.layer("friction"));
+    Marker& shares = add_balls("share", 2.0 * kPointSize, color(1.0, 1.0, 1.0));
+    for (const Contact& contact : result.contacts) {
+      const FrictionUse use = friction_use(contact, scene.bodies[contact.key.body].material);
+      shares.colors.push_back(share_color(use.limit > 0.0 ? use.tangential / use.limit : 0.0));
+    }
   }
   const MarkerLayer arrows = layers.layer("forces"), numbers = layers.layer("newtons");
   ForceMarkers forces{style, arrows, numbers};
@@ -192,44 +182,29 @@ void add_ring(const Ring& ring, const Pose& place, visualization_msgs::Marker& m
   }
 }
 
-namespace {
-
-constexpr int kSides = 12;
-
-/// Half of an arrow's outline, rotated about its axis.
-struct OutlinePoint {
-  double along, radius;
-};
-
-/// Any two unit axes perpendicular to `along`.
-std::array<Vector3, 2> across(const Vector3& along) {
-  const Vector3 first = along.unitOrthogonal();
-  return {first, along.cross(first)};
-}
-
-}  // namespace
-
 Marker& add_arrow(const Arrow& arrow, const std_msgs::ColorRGBA& paint, int id, const MarkerLayer& layer) {
+  constexpr int kSides = 12;
+  struct OutlinePoint {
+    double along, radius;
+  };
   Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), paint);
   const double length = (arrow.tip - arrow.begin).norm(), neck = length - arrow.head_length;
-  const Vector3 along = (arrow.tip - arrow.begin) / length;
-  const auto [u, v] = across(along);
-  const std::array<OutlinePoint, 5> outline{{{0.0, 0.0},
+  const Vector3 along = (arrow.tip - arrow.begin) / length, u = along.unitOrthogonal(), v = along.cross(u);
+  const std::array<OutlinePoint, 5> outline{{{0.0, 0.0},  // rotated about the axis
                                              {0.0, arrow.shaft_radius},
                                              {neck, arrow.shaft_radius},
                                              {neck, arrow.head_radius},
                                              {length, 0.0}}};
-  const auto out = [&, x = u, y = v](int side) -> Vector3 {
+  const auto out = [&](int side) -> Vector3 {
     const double turn = 2.0 * M_PI * side / kSides;
-    return std::cos(turn) * x + std::sin(turn) * y;
+    return std::cos(turn) * u + std::sin(turn) * v;
   };
   for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
     const OutlinePoint &from = outline[i], &to = outline[i + 1];
     const auto add = [&](const OutlinePoint& point, int side) {
       const Vector3 normal = (to.along - from.along) * out(side) - (to.radius - from.radius) * along;
-      const Vector3 place = arrow.begin + point.along * along + point.radius * out(side);
-      marker.points.push_back(to_message(place));
-      marker.colors.push_back(lit(normal.normalized(), paint));
+      add_lit(arrow.begin + point.along * along + point.radius * out(side), normal.normalized(), paint,
+              marker);
     };
     for (int side = 0; side < kSides; ++side) {
       if (to.radius > 0.0) add(from, side), add(to, side + 1), add(to, side);

@@ -139,9 +139,10 @@ void render_hands(const Rendering& rendering, FrameResult& result) {
     if (!state.hands[slot].active) continue;
     const HandTrack& track = lagging_track(slot, rendering, result, lagging);
     result.rendered.emplace_back();
-    rendering.renderer.render(track, static_cast<int>(slot), state.time, state.bodies, result.contacts,
-                              state.interactions.data() + slot * state.bodies.size(), state.offsets[slot],
-                              result.rendered.back());
+    HandFrameView view{track,           static_cast<int>(slot),
+                       state.time,      state.bodies,
+                       result.contacts, state.interactions.data() + slot * state.bodies.size()};
+    rendering.renderer.render(view, state.offsets[slot], result.rendered.back());
   }
 }
 

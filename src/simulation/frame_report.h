@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "../collision/contact_finder.h"
-#include "../rendering/hand_renderer.h"
+#include "../rendering/renderer.h"
 #include "mr_hand_interaction/simulation.h"
 #include "operators.h"
 

@@ -9,7 +9,7 @@
 #include "../collision/contact_finder.h"
 #include "../collision/neighbours.h"
 #include "../collision/scene_geometry.h"
-#include "../rendering/hand_renderer.h"
+#include "../rendering/renderer.h"
 #include "../response/contact_step.h"
 #include "frame_report.h"
 #include "grasp_assist.h"

@@ -18,6 +18,7 @@
 
 #include <QColor>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -50,11 +51,6 @@ QColor to_qt(const Rgb& c) {
 Rgb to_rgb(const rviz::ColorProperty& property) {
   const QColor colour = property.getColor();
   return Eigen::Array3d(colour.redF(), colour.greenF(), colour.blueF()).cast<float>();
-}
-
-void set_colour(const rviz::ColorProperty& property, std_msgs::ColorRGBA& colour) {
-  const Rgb rgb = to_rgb(property);
-  colour.r = rgb[0], colour.g = rgb[1], colour.b = rgb[2];
 }
 
 }  // namespace
@@ -179,14 +175,23 @@ class InteractionDisplay : public rviz::Display {
     rviz::VectorProperty *position_ = nullptr, *velocity_ = nullptr, *spin_ = nullptr;
     rviz::QuaternionProperty* orientation_ = nullptr;
   };
-  /// A layer's switch, and if it has them its colour and a threshold.
-  struct Layer {
-    rviz::BoolProperty* shown = nullptr;
-    rviz::ColorProperty* colour = nullptr;
-    rviz::FloatProperty* threshold = nullptr;
-  };
   rviz::BoolProperty* add_layer(const char* name, const char* title, bool shown, const char* description) {
-    return layers_[name].shown = new rviz::BoolProperty(title, shown, description, this);
+    return layers_[name] = new rviz::BoolProperty(title, shown, description, this);
+  }
+
+  void add_colour(rviz::Property* layer, const char* title, std_msgs::ColorRGBA PictureStyle::*colour) {
+    const auto* property = new rviz::ColorProperty(title, to_qt(PictureStyle().*colour), "", layer);
+    readers_.push_back([property, colour](PictureStyle& style) {
+      const Rgb rgb = to_rgb(*property);
+      (style.*colour).r = rgb[0], (style.*colour).g = rgb[1], (style.*colour).b = rgb[2];
+    });
+  }
+
+  static rviz::FloatProperty* add_number(rviz::Property* layer, const char* title, double value,
+                                         const char* description) {
+    auto* property = new rviz::FloatProperty(title, static_cast<float>(value), description, layer);
+    property->setMin(0.0f);
+    return property;
   }
 
   void add_properties() {
@@ -194,40 +199,39 @@ class InteractionDisplay : public rviz::Display {
     namespace_ = new rviz::StringProperty("Namespace", "", "In which scene and rendered_view are", this);
     unreliable_ = new rviz::BoolProperty("Unreliable", false,
                                          "Ask for UDP: on a slow network, late poses are dropped", this);
-    const auto colour = [this](const char* layer, const char* title, const QColor& value) {
-      return layers_[layer].colour = new rviz::ColorProperty(title, value, "", layers_[layer].shown);
-    };
-    const auto threshold = [this](const char* layer, const char* title, double value,
-                                  const char* description) {
-      auto* property =
-          new rviz::FloatProperty(title, static_cast<float>(value), description, layers_[layer].shown);
-      property->setMin(0.0f);
-      layers_[layer].threshold = property;
-    };
     auto* hand = add_layer("hand", "Hand", true, "The rendered hand: never inside an object");
-    colour("hand", "Skin", to_qt(kSkin));
+    skin_ = new rviz::ColorProperty("Skin", to_qt(kSkin), "", hand);
     touching_ = new rviz::ColorProperty("Touching", to_qt(tone_.touching), "Where it is in contact", hand);
     auto* ghost =
         add_layer("ghost", "Ghost", true, "The tracked hand, where it differs from the rendered one");
-    colour("ghost", "Color", to_qt(style.ghost));
-    threshold("ghost", "From [m]", style.ghost_from, "Invisible where it is nearer to the rendered hand");
-    ghost_alpha_ = new rviz::FloatProperty("Alpha", style.ghost.a, "Maximum opacity", ghost);
-    ghost_alpha_->setMin(0.0f);
-    ghost_alpha_->setMax(1.0f);
+    add_colour(ghost, "Color", &PictureStyle::ghost);
+    const auto* from =
+        add_number(ghost, "From [m]", style.ghost_from, "Invisible where it is nearer to the rendered hand");
+    auto* alpha = add_number(ghost, "Alpha", static_cast<double>(style.ghost.a), "Maximum opacity");
+    alpha->setMax(1.0f);
+    readers_.push_back([from, alpha](PictureStyle& read) {
+      read.ghost.a = alpha->getFloat();
+      read.ghost_full += static_cast<double>(from->getFloat()) - read.ghost_from;
+      read.ghost_from = static_cast<double>(from->getFloat());
+    });
     add_layer("objects", "Objects", true, "Free and jointed bodies");
     add_layer("fixtures", "Fixtures", true, "Immovable bodies");
-    add_layer("contacts", "Contacts", true, "A dot at each contact");
-    colour("contacts", "Color", to_qt(style.contacts));
+    auto* contacts = add_layer("contacts", "Contacts", true, "A dot at each contact");
+    add_colour(contacts, "Color", &PictureStyle::contacts);
     auto* friction = add_layer("friction", "Friction", true, "A ring around each contact");
-    colour("friction", "Sticks", to_qt(style.sticks));
-    slips_ = new rviz::ColorProperty("Slips", to_qt(style.slips), "", friction);
-    add_layer("forces", "Forces", true, "An arrow behind each loaded finger");
-    colour("forces", "Color", to_qt(style.forces));
-    threshold("forces", "Least [N]", style.least_force, "Smaller forces have no arrow and no number");
+    add_colour(friction, "Sticks", &PictureStyle::sticks);
+    add_colour(friction, "Slips", &PictureStyle::slips);
+    auto* forces = add_layer("forces", "Forces", true, "An arrow behind each loaded finger");
+    add_colour(forces, "Color", &PictureStyle::forces);
+    const auto* least =
+        add_number(forces, "Least [N]", style.least_force, "Smaller forces have no arrow and no number");
+    readers_.push_back(
+        [least](PictureStyle& read) { read.least_force = static_cast<double>(least->getFloat()); });
     add_layer("newtons", "Newtons", false, "The forces as numbers");
     add_layer("share", "Share", false, "Friction utilisation: blue none, orange full");
-    add_layer("impacts", "Impacts", true, "A ring at each impact of a hand, which fades within 0.15 s");
-    colour("impacts", "Color", to_qt(style.impacts));
+    auto* impacts =
+        add_layer("impacts", "Impacts", true, "A ring at each impact of a hand, which fades within 0.15 s");
+    add_colour(impacts, "Color", &PictureStyle::impacts);
     add_layer("shadows", "Shadows", true, "Vertically below hands and objects");
     add_layer("text", "Text", true, "Held objects, contact model and gravity");
     add_layer("capsules", "Capsules", false, "The rendered hand as simulated");
@@ -279,21 +283,15 @@ class InteractionDisplay : public rviz::Display {
     if (subscribed_namespace_ != namespace_->getStdString() ||
         subscribed_unreliable_ != unreliable_->getBool())
       reset();
-    for (const auto& [name, layer] : layers_) scene_->show_layer(name, layer.shown->getBool());
-    tone_ = {to_rgb(*layers_["hand"].colour) / kSkin, to_rgb(*touching_)};
+    show_layers();
+    tone_ = {to_rgb(*skin_) / kSkin, to_rgb(*touching_)};
     if (!markers_) return;
-    PictureStyle& style = markers_->style();
-    style.skins = false;
-    set_colour(*layers_["ghost"].colour, style.ghost);
-    style.ghost.a = ghost_alpha_->getFloat();
-    style.ghost_full += static_cast<double>(layers_["ghost"].threshold->getFloat()) - style.ghost_from;
-    style.ghost_from = static_cast<double>(layers_["ghost"].threshold->getFloat());
-    set_colour(*layers_["contacts"].colour, style.contacts);
-    set_colour(*layers_["friction"].colour, style.sticks);
-    set_colour(*slips_, style.slips);
-    set_colour(*layers_["forces"].colour, style.forces);
-    style.least_force = static_cast<double>(layers_["forces"].threshold->getFloat());
-    set_colour(*layers_["impacts"].colour, style.impacts);
+    markers_->style().skins = false;
+    for (const auto& read : readers_) read(markers_->style());
+  }
+
+  void show_layers() {
+    for (const auto& [name, shown] : layers_) scene_->show_layer(name, shown->getBool());
   }
 
   bool place_in_fixed_frame() {
@@ -329,7 +327,7 @@ class InteractionDisplay : public rviz::Display {
       header.stamp = stamp_;
       markers_->update(result, view_.state(), header, array_);
       scene_->take(array_);
-      for (const auto& [name, layer] : layers_) scene_->show_layer(name, layer.shown->getBool());
+      show_layers();
       for (const std::string& mesh : scene_->missing())
         setStatusStd(rviz::StatusProperty::Warn, "Mesh", "'" + mesh + "' cannot be loaded on this machine");
     }
@@ -348,10 +346,9 @@ class InteractionDisplay : public rviz::Display {
       ghosts_[i]->hide();
       if (i >= hands) continue;
       const RenderedHand& rendered = result.rendered[i];
-      if (layers_["hand"].shown->getBool())
-        skins_[i]->draw(rendered, result, view_.state(), tone_, layers_["capsules"].shown->getBool(),
-                        drawn_from_);
-      if (layers_["ghost"].shown->getBool())
+      if (layers_["hand"]->getBool())
+        skins_[i]->draw(rendered, result, view_.state(), tone_, layers_["capsules"]->getBool(), drawn_from_);
+      if (layers_["ghost"]->getBool())
         ghosts_[i]->draw_ghost(rendered.hand, result.tracked[i], style, drawn_from_);
     }
   }
@@ -368,12 +365,11 @@ class InteractionDisplay : public rviz::Display {
     return all;
   }
 
-  std::map<std::string, Layer> layers_;
+  std::map<std::string, rviz::BoolProperty*> layers_;              ///< the switch of each
+  std::vector<std::function<void(PictureStyle& style)>> readers_;  ///< of properties of the style
   rviz::StringProperty* namespace_;
   rviz::BoolProperty* unreliable_;
-  rviz::ColorProperty* touching_;
-  rviz::ColorProperty* slips_;
-  rviz::FloatProperty* ghost_alpha_;
+  rviz::ColorProperty *skin_, *touching_;
 
   std::string subscribed_namespace_;
   bool subscribed_unreliable_ = false;

@@ -32,6 +32,7 @@
 #include "../../rendering/skin.h"
 #include "../marker_layers.h"
 #include "mr_hand_interaction/ros/markers.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
@@ -291,7 +292,7 @@ inline void add_vertex(const Vector3& place, const Rgb& c, float alpha, Ogre::Ma
 class SkinObject {
  public:
   SkinObject(Ogre::SceneManager* manager, Ogre::SceneNode* parent)
-      : skin_(Skin::detailed()), paint_(skin_), manager_(manager), node_(parent->createChildSceneNode()) {
+      : skin_(Skin::detailed()), manager_(manager), node_(parent->createChildSceneNode()) {
     static int count = 0;
     object_ = manager_->createManualObject("mr_hand_interaction/skin" + std::to_string(count++));
     object_->setDynamic(true);
@@ -312,7 +313,7 @@ class SkinObject {
     object_->setVisible(skin_.pose(rendered.hand, surface_));
     if (!object_->isVisible()) return;
     press_flat(result.contacts, state, rendered.hand.id, skin_, surface_);
-    paint_.paint(rendered, surface_, colours_, tone);
+    paint_skin(skin_, rendered, surface_, colours_, tone);
     for (std::size_t v = 0; v < colours_.size(); ++v) {
       const Eigen::Vector3f to_eye = (eye - surface_.vertices[v]).cast<float>().normalized();
       colours_[v] = (colours_[v] + sheen(surface_.normals[v].cast<float>(), to_eye)).min(1.0f);
@@ -331,7 +332,7 @@ class SkinObject {
 
   /// The tracked hand where it differs from the rendered one, most opaque at its outline.
   void draw_ghost(const Hand& rendered, const Hand& tracked, const PictureStyle& style, const Vector3& eye) {
-    const bool apart = farthest_apart(rendered, tracked) > style.ghost_from;
+    const bool apart = farthest_joint(rendered, tracked) > style.ghost_from;
     object_->setVisible(apart && skin_.pose(tracked, surface_) && skin_.pose(rendered, beneath_));
     if (!object_->isVisible()) return;
     begin(true, skin_.triangles().size());
@@ -372,7 +373,6 @@ class SkinObject {
   }
 
   const Skin& skin_;
-  const SkinPaint paint_;
   Ogre::SceneManager* manager_;
   Ogre::SceneNode* node_;
   Ogre::ManualObject* object_;
