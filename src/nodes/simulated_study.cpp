@@ -39,7 +39,7 @@ struct Study {
   std::vector<double> gravities;
   std::vector<std::pair<std::string, std::string>> settings;
   std::uint64_t seed = 1;
-  bool free_hands = false, help = false;
+  bool free_hands = false;
 };
 
 void read_operators(const Given& given, Study& study) {
@@ -52,7 +52,8 @@ void read_operators(const Given& given, Study& study) {
   if (study.last < study.first) given.refuse("FIRST-LAST, FIRST at most LAST");
 }
 
-Study read_arguments(const std::vector<std::string>& arguments) {
+/// Empty for --help.
+std::optional<Study> read_arguments(const std::vector<std::string>& arguments) {
   Study study;
   CommandLine line;
   line.once("--output", "DIR", study.output).once("--task", "NAME|FILE", study.task);
@@ -66,8 +67,7 @@ Study read_arguments(const std::vector<std::string>& arguments) {
   line.once("--seed", "N",
             [&](const Given& given) { study.seed = static_cast<std::uint64_t>(given.whole(0, kMaxCount)); });
   line.flag("--free-hands", study.free_hands);
-  study.help = !line.read(arguments);
-  if (study.help) return study;
+  if (!line.read(arguments)) return std::nullopt;
   if (study.output.empty()) throw UsageError("--output is missing: --output DIR");
   if (study.models.empty())
     for (const ContactModelEntry* model : contact_models()) study.models.emplace_back(model->name);
@@ -143,12 +143,8 @@ void play(Study study) {
 
 int main(int argc, char** argv) {
   return mrhi::exit_status("simulated_study", [&] {
-    const Study study = read_arguments({argv + 1, argv + argc});
-    if (study.help) {
-      std::cout << kHelp;
-    } else {
-      play(study);
-    }
+    const std::optional<Study> study = read_arguments({argv + 1, argv + argc});
+    study ? play(*study) : void(std::cout << kHelp);
     return 0;
   });
 }

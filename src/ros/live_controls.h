@@ -121,25 +121,18 @@ class Placing {
   void renew(const Simulation& simulation) {
     if (!server_) return;
     server_->clear();
-    for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
-      const Body& body = simulation.scene().bodies[b];
-      if (body.fixed || body.is_operator) continue;
-      server_->insert(
-          marker_of(body, simulation.state().bodies[b].pose, fixed_frame_),
-          [this](const visualization_msgs::InteractiveMarkerFeedbackConstPtr& feedback) { take(*feedback); });
-    }
-    server_->applyChanges();
+    each_movable(simulation, [this](const Body& body, const Pose& pose) {
+      server_->insert(marker_of(body, pose, fixed_frame_),
+                      [this](const Feedback::ConstPtr& feedback) { take(*feedback); });
+    });
   }
 
   /// Moves the markers to their bodies.
   void follow(const Simulation& simulation) {
     if (!server_) return;
-    for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
-      const Body& body = simulation.scene().bodies[b];
-      if (!body.fixed && !body.is_operator)
-        server_->setPose(body.name, to_message(simulation.state().bodies[b].pose));
-    }
-    server_->applyChanges();
+    each_movable(simulation, [this](const Body& body, const Pose& pose) {
+      server_->setPose(body.name, to_message(pose));
+    });
   }
 
   /// Poses at which the mouse holds objects. Excludes objects that were released, or without feedback for
@@ -169,13 +162,13 @@ class Placing {
   static constexpr double kSilence = 1.0;  // [s]
   static constexpr double kRoom = 2.6;     // size of the handles, over the body's radius
 
-  static InteractiveMarkerControl control(const char* name, const Vector3& axis, std::uint8_t mode) {
-    InteractiveMarkerControl control;
-    const Quaternion turn = rotation_between(Vector3::UnitX(), axis);
-    control.name = name;
-    control.interaction_mode = mode;
-    control.orientation = to_message(Pose{Vector3::Zero(), turn}).orientation;
-    return control;
+  template <class Use>
+  void each_movable(const Simulation& simulation, const Use& use) {
+    for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
+      const Body& body = simulation.scene().bodies[b];
+      if (!body.fixed && !body.is_operator) use(body, simulation.state().bodies[b].pose);
+    }
+    server_->applyChanges();
   }
 
   /// Arrows and rings along and about the body's axes.
@@ -185,15 +178,15 @@ class Placing {
     marker.name = body.name;
     marker.scale = static_cast<float>(kRoom * body.bounding_radius);
     marker.pose = to_message(pose);
-    const struct {
-      const char *move, *turn;
-      Vector3 axis;
-    } axes[] = {{"move x", "turn x", Vector3::UnitX()},
-                {"move y", "turn y", Vector3::UnitY()},
-                {"move z", "turn z", Vector3::UnitZ()}};
-    for (const auto& a : axes) {
-      marker.controls.push_back(control(a.move, a.axis, InteractiveMarkerControl::MOVE_AXIS));
-      marker.controls.push_back(control(a.turn, a.axis, InteractiveMarkerControl::ROTATE_AXIS));
+    for (int axis = 0; axis < 3; ++axis) {
+      InteractiveMarkerControl control;
+      const Quaternion turn = rotation_between(Vector3::UnitX(), Vector3::Unit(axis));
+      control.orientation = to_message(Pose{Vector3::Zero(), turn}).orientation;
+      for (const bool turns : {false, true}) {
+        control.name = std::string(turns ? "turn " : "move ") + "xyz"[axis];
+        control.interaction_mode = turns ? control.ROTATE_AXIS : control.MOVE_AXIS;
+        marker.controls.push_back(control);
+      }
     }
     return marker;
   }
@@ -289,18 +282,29 @@ class Tuning {
     return parameter;
   }
 
+  /// Calls `use` with each field of these three types.
+  template <class Message, class Use>
+  static void each_field(Message&& message, const Use& use) {
+    for (auto& field : message.ints) use(field);
+    for (auto& field : message.doubles) use(field);
+    for (auto& field : message.strs) use(field);
+  }
+
+  static std::string text_of(int value) { return std::to_string(value); }
+  static std::string text_of(double value) { return text::exact(value); }
+  static std::string text_of(const std::string& value) { return value; }
+  static void set(const std::string& text, int& value) { value = std::atoi(text.c_str()); }
+  static void set(const std::string& text, double& value) { value = std::strtod(text.c_str(), nullptr); }
+  static void set(const std::string& text, std::string& value) { value = text; }
+
   /// Texts by parameter, for those in the dialog.
   static std::map<std::string, std::string> parameter_texts(const Config& config) {
-    std::map<std::string, std::string> fields;
-    const dynamic_reconfigure::Config message = message_of(config);
-    for (const auto& field : message.ints) fields[field.name] = std::to_string(field.value);
-    for (const auto& field : message.doubles) fields[field.name] = text::exact(field.value);
-    for (const auto& field : message.strs) fields[field.name] = field.value;
-    std::map<std::string, std::string> texts;
-    for (const std::string& name : parameter_names()) {
-      const auto field = fields.find(field_of(name));
-      if (field != fields.end()) texts[name] = field->second;
-    }
+    std::map<std::string, std::string> names, texts;
+    for (const std::string& name : parameter_names()) names[field_of(name)] = name;
+    each_field(message_of(config), [&](const auto& field) {
+      if (const auto known = names.find(field.name); known != names.end())
+        texts[known->second] = text_of(field.value);
+    });
     return texts;
   }
 
@@ -351,16 +355,10 @@ class Tuning {
     const Simulation& simulation = actions_.simulation();
     const Configuration& configuration = simulation.configuration();
     dynamic_reconfigure::Config message = message_of(Config::__getDefault__());
-    for (const std::string& name : parameter_names()) {
-      const std::string field = field_of(name);
-      const std::string text = parameter_text(configuration, name);
-      for (auto& entry : message.ints)
-        if (entry.name == field) entry.value = std::atoi(text.c_str());
-      for (auto& entry : message.doubles)
-        if (entry.name == field) entry.value = std::strtod(text.c_str(), nullptr);
-      for (auto& entry : message.strs)
-        if (entry.name == field) entry.value = text;
-    }
+    for (const std::string& name : parameter_names())
+      each_field(message, [&](auto& field) {
+        if (field.name == field_of(name)) set(parameter_text(configuration, name), field.value);
+      });
     Config config;
     config.__fromMessage__(message);
     const Vector3 gravity = configuration.gravity.value_or(simulation.scene().gravity);

@@ -24,11 +24,12 @@ int run_node(int argc, char** argv, const char* name, const char* usage, const N
 /// The same without checking arguments.
 int run_node(int argc, char** argv, const char* name, const NodeBody& body);
 
-/// main() of a node that is an object, made from its handles, which works while ROS spins.
-template <class Node>
+/// main() of a node that is an object, made from its handles and its `Parameters` on the parameter server,
+/// which works while ROS spins.
+template <class Node, class Parameters>
 int run_node(int argc, char** argv, const char* name, const char* usage) {
   return run_node(argc, argv, name, usage, [](const auto& node, const auto& private_node) {
-    const Node running(node, private_node);
+    const Node running(node, private_node, Parameters(private_node));
     ros::spin();
   });
 }

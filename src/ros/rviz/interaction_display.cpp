@@ -42,10 +42,10 @@ constexpr double kEyeMoved = 1e-4;     // [m]
 const Rgb kSkin(0.91f, 0.73f, 0.62f);  // base of the skin's tone
 
 QColor to_qt(const std_msgs::ColorRGBA& c) {
-  return QColor::fromRgbF(static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b));
+  return QColor::fromRgbF(c.r, c.g, c.b);
 }
 QColor to_qt(const Rgb& c) {
-  return to_qt(color(static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])));
+  return to_qt(color(c[0], c[1], c[2]));
 }
 
 Rgb to_rgb(const rviz::ColorProperty& property) {
@@ -106,17 +106,15 @@ class InteractionDisplay : public rviz::Display {
 
  private:
   const Mesh* mesh_of_file(const std::string& uri) const {
-    const auto mesh_of = [&](const Shape& shape) {
-      const Mesh* const mesh = std::get_if<Mesh>(&shape);
-      return mesh != nullptr && mesh->uri == uri && mesh->triangles ? mesh : nullptr;
+    const Mesh* found = nullptr;
+    const auto look_in = [&](const auto& parts) {
+      for (const auto& part : parts) {
+        const Mesh* const mesh = std::get_if<Mesh>(&part.shape);
+        if (found == nullptr && mesh != nullptr && mesh->uri == uri && mesh->triangles) found = mesh;
+      }
     };
-    for (const Body& body : view_.scene().bodies) {
-      for (const Visual& visual : body.visuals)
-        if (const Mesh* const mesh = mesh_of(visual.shape)) return mesh;
-      for (const PlacedShape& placed : body.shapes)
-        if (const Mesh* const mesh = mesh_of(placed.shape)) return mesh;
-    }
-    return nullptr;
+    for (const Body& body : view_.scene().bodies) look_in(body.visuals), look_in(body.shapes);
+    return found;
   }
 
   /// Properties of an object in rviz's Selection panel.
@@ -189,7 +187,7 @@ class InteractionDisplay : public rviz::Display {
 
   static rviz::FloatProperty* add_number(rviz::Property* layer, const char* title, double value,
                                          const char* description) {
-    auto* property = new rviz::FloatProperty(title, static_cast<float>(value), description, layer);
+    auto* property = new rviz::FloatProperty(title, value, description, layer);
     property->setMin(0.0f);
     return property;
   }
@@ -207,12 +205,12 @@ class InteractionDisplay : public rviz::Display {
     add_colour(ghost, "Color", &PictureStyle::ghost);
     const auto* from =
         add_number(ghost, "From [m]", style.ghost_from, "Invisible where it is nearer to the rendered hand");
-    auto* alpha = add_number(ghost, "Alpha", static_cast<double>(style.ghost.a), "Maximum opacity");
+    auto* alpha = add_number(ghost, "Alpha", style.ghost.a, "Maximum opacity");
     alpha->setMax(1.0f);
     readers_.push_back([from, alpha](PictureStyle& read) {
       read.ghost.a = alpha->getFloat();
-      read.ghost_full += static_cast<double>(from->getFloat()) - read.ghost_from;
-      read.ghost_from = static_cast<double>(from->getFloat());
+      read.ghost_full += from->getFloat() - read.ghost_from;
+      read.ghost_from = from->getFloat();
     });
     add_layer("objects", "Objects", true, "Free and jointed bodies");
     add_layer("fixtures", "Fixtures", true, "Immovable bodies");
@@ -225,8 +223,7 @@ class InteractionDisplay : public rviz::Display {
     add_colour(forces, "Color", &PictureStyle::forces);
     const auto* least =
         add_number(forces, "Least [N]", style.least_force, "Smaller forces have no arrow and no number");
-    readers_.push_back(
-        [least](PictureStyle& read) { read.least_force = static_cast<double>(least->getFloat()); });
+    readers_.push_back([least](PictureStyle& read) { read.least_force = least->getFloat(); });
     add_layer("newtons", "Newtons", false, "The forces as numbers");
     add_layer("share", "Share", false, "Friction utilisation: blue none, orange full");
     auto* impacts =
@@ -313,9 +310,7 @@ class InteractionDisplay : public rviz::Display {
 
   Vector3 eye() const {
     const Ogre::Vector3 place = scene_node_->convertWorldToLocalPosition(camera().getDerivedPosition());
-    return Eigen::Vector3f(static_cast<float>(place.x), static_cast<float>(place.y),
-                           static_cast<float>(place.z))
-        .cast<double>();
+    return Vector3(place.x, place.y, place.z);
   }
 
   void draw() {

@@ -41,16 +41,13 @@ using visualization_msgs::MarkerArray;
 
 template <typename Vector>
 Ogre::Vector3 to_ogre(const Vector& v) {
-  return Ogre::Vector3(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
+  return Ogre::Vector3(v.x, v.y, v.z);
 }
-
 inline Ogre::Vector3 to_ogre(const Vector3& v) {
-  return Ogre::Vector3(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
+  return Ogre::Vector3(v.x(), v.y(), v.z());
 }
-
 inline Ogre::Quaternion to_ogre(const geometry_msgs::Quaternion& q) {
-  return Ogre::Quaternion(static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
-                          static_cast<float>(q.z));
+  return Ogre::Quaternion(q.w, q.x, q.y, q.z);
 }
 
 constexpr const char* kStatus = "text";  ///< the layer of held objects
@@ -174,8 +171,7 @@ class MarkerScene {
     for (const auto& triangle : mesh->triangles->triangles) {
       std::array<Vector3, 3> corners;
       for (std::size_t i = 0; i < 3; ++i)
-        corners[i] =
-            mesh->triangles->vertices[static_cast<std::size_t>(triangle[i])].cwiseQuotient(mesh->scale);
+        corners[i] = mesh->triangles->vertices[triangle[i]].cwiseQuotient(mesh->scale);
       const Vector3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
       for (const Vector3& corner : corners) {
         object.position(to_ogre(corner));
@@ -246,7 +242,7 @@ class FineSkin {
     const auto middle = [&](int a, int b) {
       const auto [found, is_new] =
           middles.try_emplace(std::minmax(a, b), static_cast<int>(skin.size() + edges_.size()));
-      if (is_new) edges_.push_back({static_cast<std::size_t>(a), static_cast<std::size_t>(b)});
+      if (is_new) edges_.push_back({a, b});
       return found->second;
     };
     for (const auto& [a, b, c] : skin.triangles()) {
@@ -276,7 +272,7 @@ class FineSkin {
   }
 
  private:
-  std::vector<std::array<std::size_t, 2>> edges_;
+  std::vector<std::array<int, 2>> edges_;
   SkinTriangles triangles_;
 };
 
@@ -366,9 +362,7 @@ class SkinObject {
 
   void end(Side side, const SkinTriangles& triangles) {
     const std::size_t second = side == Side::left ? 2 : 1;
-    for (const auto& t : triangles)
-      object_->triangle(static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[second]),
-                        static_cast<std::uint32_t>(t[3 - second]));
+    for (const auto& t : triangles) object_->triangle(t[0], t[second], t[3 - second]);
     object_->end();
   }
 
