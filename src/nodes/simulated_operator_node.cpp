@@ -12,6 +12,7 @@
 #include "../ros/leap_human_publisher.h"
 #include "../ros/node.h"
 #include "../ros/result_messages.h"
+#include "../text/text.h"
 #include "../training/operator_trial.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -141,9 +142,8 @@ class OperatorPublisher {
   void begin() {
     trial_ = status_.trial;
     time_ = 0.0;
-    const auto named = [this](const TaskObject& object) { return object.name == object_.name; };
-    const auto object = std::find_if(task_.objects.begin(), task_.objects.end(), named);
-    if (object == task_.objects.end())
+    const TaskObject* const object = text::find_named(task_.objects, object_.name);
+    if (object == nullptr)
       throw std::invalid_argument("task '" + task_.name + "' has no object '" + object_.name +
                                   "': training_node and the simulated operator must have the same task");
     person_ = make_person(skill_, task_, body_of(*object), seed_ + trial_, surroundings_);

@@ -87,9 +87,7 @@ Configuration configuration_of(const Study& study, const std::string& model) {
 
 /// Runs one simulated operator's session under one condition.
 void play_session(const Study& study, int person, const std::string& model, double gravity, Task task) {
-  char name[16], strength[16];
-  std::snprintf(name, sizeof name, "P%02d", person);
-  std::snprintf(strength, sizeof strength, "%gg", gravity);
+  const std::string name = text::format("P%02d", person), strength = text::format("%gg", gravity);
   task.gravity = Vector3(0.0, 0.0, -kStandardGravity * gravity);
 
   OperatorStage stage;
@@ -118,8 +116,8 @@ void play_session(const Study& study, int person, const std::string& model, doub
   while (session.phase() == SessionPhase::ready) {
     stamp = play_trial(session, skill, trials + session.position(), stage, stamp) + 1'000'000'000;
     const TrialRow& row = *session.last();
-    std::printf("%s %s %s %s: %s, %.1f s, attempts %d, drops %d\n", name, model.c_str(), strength,
-                row.object.c_str(), to_string(row.result), row.measures.completion_time,
+    std::printf("%s %s %s %s: %s, %.1f s, attempts %d, drops %d\n", name.c_str(), model.c_str(),
+                strength.c_str(), row.object.c_str(), to_string(row.result), row.measures.completion_time,
                 row.measures.attempts, row.measures.drops);
     std::fflush(stdout);
   }

@@ -22,6 +22,7 @@
 #include "../ros/node.h"
 #include "../ros/result_messages.h"
 #include "../ros/training_system.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/training/session.h"
 
@@ -55,12 +56,6 @@ const ros::WallDuration kPeriod(1.0 / 20), kRetry(2.0);
 
 Nanoseconds now() {
   return from_ros_time(ros::Time::now());
-}
-
-std::optional<msg::ObjectState> object_of(const msg::ObjectStateArray& message, const std::string& name) {
-  for (const auto& object : message.objects)
-    if (object.name == name) return object;
-  return std::nullopt;
 }
 
 }  // namespace
@@ -145,7 +140,8 @@ class TrainingServer {
     }
     scene_.note_objects(std::move(names), since_.person.has_value());
     fixed_frame_ = message.header.frame_id;
-    seen_ = object_of(message, watched().name);
+    const auto* const object = text::find_named(message.objects, watched().name);
+    seen_ = object ? std::make_optional(*object) : std::nullopt;
     if (session_.phase() != SessionPhase::running) return;
     const std::optional<Observation> seen = observed(message);
     at_start_ |= seen && starts(*seen);
@@ -241,7 +237,7 @@ class TrainingServer {
     bool there = false;
     for (const Body& body : scene.bodies) {
       parts.insert(body.name);
-      const auto object = object_of(message, body.name);
+      const auto* const object = text::find_named(message.objects, body.name);
       if (!object) continue;
       there = true;
       seen.held |= object->held != 0;

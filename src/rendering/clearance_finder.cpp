@@ -15,18 +15,13 @@ constexpr double kPlaneTolerance = 1e-4;
 /// Smallest cosine between normals of one side of a body.
 constexpr double kMinSameSideCosine = 0.5;
 
-const Contact* touching(const std::vector<Contact>& contacts, int slot, int capsule, int body, int shape) {
-  for (const Contact& contact : contacts) {
+const Contact* touching(const HandFrameView& view, int capsule, int body, int shape) {
+  const auto found = std::find_if(view.contacts.begin(), view.contacts.end(), [&](const Contact& contact) {
     const ContactKey& key = contact.key;
-    if (key.hand == slot && key.capsule == capsule && key.body == body && key.shape == shape &&
-        contact.touching())
-      return &contact;
-  }
-  return nullptr;
-}
-
-double deepest_end(const Capsule& capsule, const Vector3& normal) {
-  return normal.dot(capsule.end - capsule.start) < 0.0 ? 1.0 : 0.0;
+    return key.hand == view.slot && key.capsule == capsule && key.body == body && key.shape == shape &&
+           contact.touching();
+  });
+  return found == view.contacts.end() ? nullptr : &*found;
 }
 
 /// Height of a capsule's surface above a plane [m].
@@ -34,20 +29,11 @@ double height(const Capsule& capsule, const Vector3& normal, const Vector3& poin
   return std::min(normal.dot(capsule.start - point), normal.dot(capsule.end - point)) - capsule.radius;
 }
 
-bool outside(const Capsule& capsule, const Vector3& normal, const Vector3& point) {
-  return height(capsule, normal, point) > -ClearanceFinder::kShallow;
-}
-
 /// True if the plane can bound the shape. The height above a plane that has all of a convex shape below it is
 /// a lower bound of the distance. A plane of an earlier frame may violate this if the shape is hollow or has
 /// turned.
 bool keeps_out(const Capsule& capsule, const Vector3& normal, const Vector3& point, double distance) {
   return height(capsule, normal, point) <= distance + kPlaneTolerance;
-}
-
-/// n.a(s) - height - r, with n.x = height the plane and r the capsule's radius.
-double gap(const Capsule& capsule, const Clearance& clearance) {
-  return clearance.normal.dot(capsule.axis_point(clearance.s)) - clearance.height - capsule.radius;
 }
 
 /// The entry of this key, created if there is none. Removes entries of another side of the shape.
@@ -149,7 +135,8 @@ double ClearanceFinder::find(const Hand& placed, std::vector<Clearance>& clearan
     }
   });
   for (Clearance& clearance : clearances) {
-    clearance.gap = gap(placed.capsules[clearance.key.capsule], clearance);
+    const Capsule& capsule = placed.capsules[clearance.key.capsule];
+    clearance.gap = clearance.normal.dot(capsule.axis_point(clearance.s)) - clearance.height - capsule.radius;
     min_gap = std::min(min_gap, clearance.gap);
   }
   return min_gap;
@@ -173,10 +160,10 @@ ClearanceFinder::Face ClearanceFinder::face(const Hand& placed, int c, const Nea
   if (features.distance > -kShallow) return nearest;
   const Capsule& capsule = placed.capsules[c];
   const Capsule* before = view_->shown_before == nullptr ? nullptr : &view_->shown_before->capsules[c];
-  if (const Contact* contact = touching(view_->contacts, view_->slot, c, near.body, near.shape)) {
-    const bool same_side = before == nullptr || outside(*before, contact->normal, contact->point);
+  if (const Contact* contact = touching(*view_, c, near.body, near.shape)) {
+    const bool same_side = before == nullptr || height(*before, contact->normal, contact->point) > -kShallow;
     if (same_side && contact->normal.dot(features.normal) >= kMinSameSideCosine) return nearest;
-    const double s = deepest_end(capsule, contact->normal);
+    const double s = contact->normal.dot(capsule.end - capsule.start) < 0.0 ? 1.0 : 0.0;  // the deeper end
     const bool keeps = keeps_out(capsule, contact->normal, contact->point, features.distance);
     if (same_side && keeps) return {contact->normal, contact->point, s, s};
   }

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <variant>
 
 #include "../math/rotation.h"
 #include "../simulation/contact_phase.h"
+#include "../text/text.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
@@ -106,12 +106,10 @@ struct ForceMarkers {
     const std_msgs::ColorRGBA& paint = pulls ? style.assist : style.forces;
     add_arrow({pulls ? inner : outer, pulls ? outer : inner, 0.00175, 0.0045, std::min(0.014, 0.5 * length)},
               paint, this_id, arrows);
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1f N", newtons);
     numbers
         .add(this_id, Marker::TEXT_VIEW_FACING, {outer + kNumberGap * outwards}, Vector3::Constant(kLetters),
              paint)
-        .text = text;
+        .text = text::format("%.1f N", newtons);
   }
 };
 

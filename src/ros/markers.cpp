@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "../math/rotation.h"
 #include "../rendering/skin.h"
 #include "../simulation/contact_phase.h"
+#include "../text/text.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
@@ -28,13 +28,12 @@ Vector3 below(const Scene& scene) {
 }
 
 std::string held_by_hands(const Scene& scene, const FrameResult& result, const SimulationState& state) {
-  std::string held;
+  std::vector<std::string> held;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if (!is_held(i, state)) continue;
-    held += (held.empty() ? "" : ", ") + scene.bodies[i].name +
-            (assist_force(i, result) ? " (with grasp assist)" : "");
+    if (is_held(i, state))
+      held.push_back(scene.bodies[i].name + (assist_force(i, result) ? " (with grasp assist)" : ""));
   }
-  return "holding: " + (held.empty() ? "nothing" : held);
+  return "holding: " + (held.empty() ? "nothing" : text::joined(held));
 }
 
 /// Linear and angular speed of each operator; empty without operators.
@@ -43,10 +42,8 @@ std::string motion_of_operators(const Scene& scene, const SimulationState& state
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (!scene.bodies[i].is_operator) continue;
     const Twist twist = twist_of(scene.bodies[i], state.bodies[i]);
-    char text[64];
-    std::snprintf(text, sizeof text, ": %.3f m/s, %.1f deg/s", twist.linear.norm(),
-                  twist.angular.norm() / kDegree);
-    all += "\n" + scene.bodies[i].name + text;
+    all += "\n" + scene.bodies[i].name +
+           text::format(": %.3f m/s, %.1f deg/s", twist.linear.norm(), twist.angular.norm() / kDegree);
   }
   return all;
 }
@@ -180,9 +177,7 @@ Marker& MarkerLayer::add(int id, int type, const Pose& pose, const Vector3& scal
 
 std::string caption(const std::string& contact_model, const Vector3& gravity) {
   const double g = gravity.norm();
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f m/s2", g);
-  return contact_model + "  |  gravity: " + (g > 0.0 ? text : "none");
+  return contact_model + "  |  gravity: " + (g > 0.0 ? text::format("%.2f m/s2", g) : "none");
 }
 
 std::vector<Visual> drawn_shapes(const Body& body) {

@@ -108,14 +108,6 @@ std::optional<Twist> twist_in(const std::string& name, const std::string& text) 
   });
 }
 
-/// A name that must not be empty.
-NodeParameters::Take name_of(std::string& value) {
-  return [&value](const std::string&, const std::string& text) {
-    value = text;
-    return !text.empty();
-  };
-}
-
 /// Lets the node finish its work on these signals. Call after ros::init().
 void end_in_order() {
   struct sigaction action {};
@@ -156,6 +148,14 @@ NodeParameters& NodeParameters::text(const std::string& name, std::string& value
   });
 }
 
+NodeParameters& NodeParameters::required(const std::string& name, const std::string& allowed,
+                                         std::string& value) {
+  text(name, value);
+  entries_.back().allowed = allowed;
+  entries_.back().required = &value;
+  return *this;
+}
+
 NodeParameters& NodeParameters::texts(const std::string& name, std::size_t min, std::size_t max,
                                       const std::string& what, std::vector<std::string>& values) {
   const std::string allowed = "a list of " + std::to_string(min) + " to " + std::to_string(max) + " " + what;
@@ -187,6 +187,13 @@ void NodeParameters::read(const ros::NodeHandle& private_node) const {
   if (private_node.getParam(private_node.getNamespace(), values) &&
       values.getType() == XmlRpc::XmlRpcValue::TypeStruct)
     take_all("", values);
+  for (const Entry& entry : entries_)
+    if (entry.required != nullptr && entry.required->empty()) entry.refuse(entry.name, "");
+}
+
+void NodeParameters::Entry::refuse(const std::string& as, const std::string& text) const {
+  throw ParameterError("parameter '" + as + "': " + (text.empty() ? "''" : text::one_line(text, 60)) +
+                       " is not allowed; allowed: " + allowed);
 }
 
 void NodeParameters::take_all(const std::string& prefix, XmlRpc::XmlRpcValue& values) const {
@@ -208,8 +215,7 @@ void NodeParameters::take(const std::string& name, const std::string& text) cons
     const bool space = entry.name.back() == '/';
     if (name == entry.name || (space && name.compare(0, entry.name.size(), entry.name) == 0)) {
       if (entry.take(name, text)) return;
-      throw ParameterError("parameter '" + name + "': " + (text.empty() ? "''" : text::one_line(text, 60)) +
-                           " is not allowed; allowed: " + entry.allowed);
+      entry.refuse(name, text);
     }
     if (!space) names.push_back(entry.name);
   }
@@ -241,7 +247,7 @@ std::string yaml_text(XmlRpc::XmlRpcValue value) {
 ServerParameters read_server_parameters(const ros::NodeHandle& private_node) {
   ServerParameters read;
   NodeParameters known;
-  known.add("scene", "text", name_of(read.scene)).add("fixed_frame", "text", name_of(read.fixed_frame));
+  known.required("scene", "text", read.scene).required("fixed_frame", "text", read.fixed_frame);
   known.choice<HapticsRate>("haptics/rate", {{"frame", HapticsRate::frame}, {"step", HapticsRate::step}},
                             read.haptics_rate);
   known.truth("place_by_mouse", read.place_by_mouse).truth("standard_outputs", read.standard_outputs);

@@ -179,14 +179,13 @@ class ResultPublisher {
         clock_(clock),
         haptics_(node, haptics),
         events_(node.advertise<mr_hand_interaction::InteractionEvent>("interaction_events", kEventQueue)),
-        marker_publisher_(
-            node.advertise<visualization_msgs::MarkerArray>("markers", kQueue,
-                                                            [this](const ros::SingleSubscriberPublisher&) {
-                                                              if (markers_) markers_->send_all();
-                                                            })),
         scene_publisher_(node.advertise<mr_hand_interaction::SceneDescription>("scene", 1, true)),
         transforms_(node.advertise<tf2_msgs::TFMessage>("/tf", kTransformQueue)),
         picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {
+    marker_publisher_ =
+        node.advertise<visualization_msgs::MarkerArray>("markers", kQueue, [this](const auto&) {
+          if (markers_) markers_->send_all();
+        });
     add<mr_hand_interaction::ContactArray>(node, "contacts", Moment::response, Shows::hands,
                                            contacts_message);
     add<mr_hand_interaction::ObjectStateArray>(node, "objects", Moment::response, Shows::objects,
@@ -353,7 +352,7 @@ class ResultPublisher {
   HapticsPublisher haptics_;
   std::optional<StandardOutputs> standard_;
   std::vector<Output> outputs_;
-  ros::Publisher events_, marker_publisher_, scene_publisher_, transforms_;
+  ros::Publisher events_, scene_publisher_, transforms_, marker_publisher_;
   bool scene_changed_ = false;
   visualization_msgs::MarkerArray::Ptr picture_;  // the last one
   ros::Time transforms_stamp_;

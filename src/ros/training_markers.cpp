@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 #include <vector>
 
@@ -90,37 +89,25 @@ void add_places(const Session& session, const Body& body, const MarkerLayer& pla
 }
 
 std::string heading(const Status& status) {
-  char buffer[160];
-  std::snprintf(buffer, sizeof buffer, "trial %u of %u: %s", status.trial, status.trials,
-                text::with_spaces(status.object).c_str());
-  return buffer;
+  return text::format("trial %u of %u: ", status.trial, status.trials) + text::with_spaces(status.object);
 }
 
 std::string timer_text(const Goal& goal, const Status& status) {
-  char buffer[64] = "";
-  const bool runs = status.progress > 0.0 && status.progress < 1.0;
-  if (status.phase == Status::RUNNING && runs && goal.kind != GoalKind::release)
-    std::snprintf(buffer, sizeof buffer, "%.1f s", status.remaining);
-  return buffer;
+  const bool runs = status.phase == Status::RUNNING && status.progress > 0.0 && status.progress < 1.0;
+  return runs && goal.kind != GoalKind::release ? text::format("%.1f s", status.remaining) : "";
 }
 
 std::string result_text(const Session& session, const Status& status) {
-  char buffer[160] = "";
-  if (status.phase == Status::RUNNING || status.phase == Status::PAUSED) {
-    std::snprintf(buffer, sizeof buffer, "%.0f s, dropped: %u", status.elapsed, status.drops);
-  } else if (session.last()) {
-    const TrialRow& last = *session.last();
-    std::snprintf(buffer, sizeof buffer, "%s: %s, %.1f s, dropped: %d",
-                  text::with_spaces(last.object).c_str(), to_string(last.result),
-                  last.measures.completion_time, last.measures.drops);
-    std::string line = buffer;
-    if (last.measures.release_drift) {
-      std::snprintf(buffer, sizeof buffer, ", drifted %.0f mm", 1e3 * *last.measures.release_drift);
-      line += buffer;
-    }
-    return line;
-  }
-  return buffer;
+  if (status.phase == Status::RUNNING || status.phase == Status::PAUSED)
+    return text::format("%.0f s, dropped: %u", status.elapsed, status.drops);
+  if (!session.last()) return "";
+  const TrialRow& last = *session.last();
+  const TrialMeasures& measures = last.measures;
+  const std::string line =
+      text::with_spaces(last.object) + text::format(": %s, %.1f s, dropped: %d", to_string(last.result),
+                                                    measures.completion_time, measures.drops);
+  return measures.release_drift ? line + text::format(", drifted %.0f mm", 1e3 * *measures.release_drift)
+                                : line;
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <std_srvs/Trigger.h>
 
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <functional>
@@ -39,21 +38,18 @@ struct TrainingParameters {
   explicit TrainingParameters(const ros::NodeHandle& private_node) {
     constexpr double kMaxBreak = 3600.0;  // [s]
     NodeParameters known;
-    known.text("task", task).text("participant", header.participant).text("group", header.group);
-    known.text("handedness", header.handedness).text("condition", header.condition);
+    known.text("task", task);
+    known.required("participant", "who takes part, such as P07", header.participant);
+    known.text("group", header.group)
+        .text("handedness", header.handedness)
+        .text("condition", header.condition);
     known.whole("seed", 0, header.seed).whole("session", 1, header.session).whole("number", 1, number);
     known.truth("simulated", header.simulated).truth("operator", by_operator).truth("auto_start", auto_start);
-    known.text("folder", folder).text("simulation", simulation);
+    known.required("folder", "where the session is to be", folder).text("simulation", simulation);
     known.number("auto_next", -kMaxBreak, kMaxBreak, auto_next, " [s], below 0: not by itself");
     known.read(private_node);
     const char* const home = std::getenv("HOME");
     if (home != nullptr && folder.compare(0, 2, "~/") == 0) folder = home + folder.substr(1);
-    const auto require = [](const char* name, const std::string& value, const std::string& allowed) {
-      if (value.empty())
-        throw ParameterError("parameter '" + std::string(name) + "': '' is not allowed; allowed: " + allowed);
-    };
-    require("participant", header.participant, "who takes part, such as P07");
-    require("folder", folder, "where the session is to be");
   }
 
   /// Configuration of the interaction node, from the parameter server, with a task's gravity.
@@ -98,10 +94,9 @@ struct TrainingParameters {
     const auto since = std::chrono::system_clock::now().time_since_epoch();
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(since).count();
     const std::time_t seconds = static_cast<std::time_t>(ms / 1000);
-    char whole[32], part[16] = "";
+    char whole[32];
     std::strftime(whole, sizeof whole, "%Y-%m-%dT%H:%M:%S", std::gmtime(&seconds));
-    if (with_milliseconds) std::snprintf(part, sizeof part, ".%03d", static_cast<int>(ms % 1000));
-    return std::string(whole) + part + "Z";
+    return whole + (with_milliseconds ? text::format(".%03d", static_cast<int>(ms % 1000)) : "") + "Z";
   }
 
   Configuration configuration_of(const ros::NodeHandle& node) const {

@@ -17,7 +17,6 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include <QColor>
-#include <cstdio>
 #include <functional>
 #include <map>
 #include <memory>
@@ -26,6 +25,7 @@
 #include <vector>
 
 #include "../../simulation/contact_phase.h"
+#include "../../text/text.h"
 #include "../scene_view.h"
 #include "mr_hand_interaction/ros/markers.h"
 #include "scene_objects.h"
@@ -350,14 +350,12 @@ class InteractionDisplay : public rviz::Display {
 
   /// Fingers that touch an object, with their forces.
   std::string touching(const std::string& object) {
-    char force[32];
-    std::string all;
+    std::vector<std::string> fingers;
     for (const Contact& contact : view_.result().contacts) {
-      if (!contact.touching() || view_.scene().bodies[contact.key.body].name != object) continue;
-      std::snprintf(force, sizeof force, " %.1f N", contact.force.norm());
-      all += (all.empty() ? "" : ", ") + std::string(finger_name(contact.key.capsule)) + force;
+      if (contact.touching() && view_.scene().bodies[contact.key.body].name == object)
+        fingers.push_back(finger_name(contact.key.capsule) + text::format(" %.1f N", contact.force.norm()));
     }
-    return all;
+    return text::joined(fingers);
   }
 
   std::map<std::string, rviz::BoolProperty*> layers_;              ///< the switch of each
