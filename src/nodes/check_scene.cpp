@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
-#include <stdexcept>
 
 #include "../scene/solid_mesh.h"
 #include "../text/command_line.h"

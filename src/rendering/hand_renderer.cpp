@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "../collision/neighbours.h"
 #include "renderer.h"

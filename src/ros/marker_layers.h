@@ -5,7 +5,6 @@
 #include <std_msgs/ColorRGBA.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <array>
 #include <map>
 #include <optional>
 #include <string>
