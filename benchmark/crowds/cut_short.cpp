@@ -86,7 +86,8 @@ class Falling {
 
  private:
   ContactStep at(std::vector<BodyContact>& touches, std::vector<BodyState>& bodies) {
-    return {scene_, scene_.gravity, kStep, no_hands_, touches, bodies, changes_, no_grips_};
+    return {scene_, scene_.gravity, kStep,    configuration_.contact, no_hands_, touches,
+            bodies, changes_,       no_grips_};
   }
 
   void compare(Sizes& sizes) {
@@ -110,7 +111,7 @@ class Falling {
     std::vector<BodyState> bodies = step.bodies;
     std::vector<BodyContact> touches = step.body_contacts;
     ContactStep copy = at(touches, bodies);
-    problem_.begin(copy, island, configuration_.contact, carried);
+    problem_.begin(copy, island, carried);
     for (int i = 0; i < budgets; ++i) problem_.solve(copy);
     problem_.finish(copy, island);
     return bodies;

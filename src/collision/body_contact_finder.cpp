@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "contact_region.h"
-#include "sweep.h"
+#include "step_motion.h"
 
 namespace mrhi {
 namespace {
@@ -139,10 +139,10 @@ void place_friction(const ShapePair& pair, const std::array<BodyContact*, 4>& re
   Vector3 centre = Vector3::Zero(), even = Vector3::Zero();
   double load = 0.0;
   for (int i = 0; i < count; ++i) {
-    const BodyContact& contact = *region[static_cast<std::size_t>(i)];
+    const BodyContact& contact = *region[i];
     const Vector3 offset = contact.point - region[0]->point;
     const double force = std::max(0.0, -normal.dot(contact.force));
-    places[static_cast<std::size_t>(i)] = {u.dot(offset), v.dot(offset)};
+    places[i] = {u.dot(offset), v.dot(offset)};
     centre += force * contact.point;
     load += force;
     even += contact.point / count;
@@ -151,7 +151,7 @@ void place_friction(const ShapePair& pair, const std::array<BodyContact*, 4>& re
   const double spread =
       count == 4 && on_rim(pair, normal, places) ? kDiscMeanRadius : spread_of(places, count);
   for (int i = 0; i < count; ++i) {
-    BodyContact& contact = *region[static_cast<std::size_t>(i)];
+    BodyContact& contact = *region[i];
     const Vector3 inwards = (1.0 - spread) * (centre - contact.point);
     contact.friction_offset = inwards - normal.dot(inwards) * normal;
   }
@@ -228,7 +228,7 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
   followed_ = followed_gap(neighbours, bodies, asleep, step, driven);
   reached_ = 0;
   reaches_.resize(bodies.size());
-  for (const int body : neighbours.paired()) reaches_[static_cast<std::size_t>(body)].reset();
+  for (const int body : neighbours.paired()) reaches_[body].reset();
   const auto reach = [&](std::size_t body) -> Reach& {
     std::optional<Reach>& found = reaches_[body];
     return found ? *found : found.emplace(reach_of(body, bodies[body], step));
@@ -332,7 +332,7 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
         std::array<BodyContact*, 4> together{};
         int count = 0;
         for (std::size_t k = first; k < found_.size(); ++k)
-          if (regions[k - first] == region) together[static_cast<std::size_t>(count++)] = &found_[k];
+          if (regions[k - first] == region) together[count++] = &found_[k];
         if (count == 0) break;  // regions are numbered from 0
         place_friction(pair, together, count);
       }

@@ -39,9 +39,7 @@ struct Manifold {
     std::copy_n(other.points.begin(), count, points.begin());
     return *this;
   }
-  const Vector3& normal_of(int region) const {
-    return region == 0 ? normal : other_normals[static_cast<std::size_t>(region - 1)];
-  }
+  const Vector3& normal_of(int region) const { return region == 0 ? normal : other_normals[region - 1]; }
   ManifoldPoint* begin() { return points.data(); }
   ManifoldPoint* end() { return points.data() + count; }
   const ManifoldPoint* begin() const { return points.data(); }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sweep.h"
+#include "step_motion.h"
 
 namespace mrhi {
 namespace {
@@ -12,10 +12,6 @@ namespace {
 /// kSeparation, so that a contact loses its memory before it ends: a phalanx that returns causes a new
 /// impact.
 constexpr double kMargin = 0.001;
-
-Capsule to_local(const Pose& pose, const Capsule& capsule) {
-  return {pose.to_local(capsule.start), pose.to_local(capsule.end), capsule.radius};
-}
 
 }  // namespace
 
@@ -33,7 +29,7 @@ void ContactFinder::find(const std::vector<HandMotion>& hands, const Neighbours&
   for (const HandMotion& motion : hands) {
     const MovingHand& hand = motion.hand();
     for (const NearBody& near : neighbours.near_hand(hand.slot))
-      find_pair(hand, near, bodies[static_cast<std::size_t>(near.body)], step, contacts);
+      find_pair(hand, near, bodies[near.body], step, contacts);
   }
   found_.resize(found_count_);
   if (hands.size() > 1) {
@@ -51,8 +47,7 @@ std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, in
 std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, int body, int shape,
                                                       const PlacedFrame& frame, double margin,
                                                       AxisSpan* span) const {
-  const PlacedCollider& collider =
-      geometry_.colliders[static_cast<std::size_t>(body)][static_cast<std::size_t>(shape)];
+  const PlacedCollider& collider = geometry_.colliders[body][shape];
   const Capsule in_body{frame.rotation.transpose() * (capsule.start - frame.position),
                         frame.rotation.transpose() * (capsule.end - frame.position), capsule.radius};
   const Capsule in_shape = collider.to_shape(in_body);
@@ -71,7 +66,7 @@ std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, in
 /// the body has moved since they still hold.
 void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, const BodyState& state,
                               double step, const std::vector<Contact>& before) {
-  const Body& body = scene_.bodies[static_cast<std::size_t>(near.body)];
+  const Body& body = scene_.bodies[near.body];
   const MovingBody moving(body, state, gravity_);
   const double body_speed = moving.twist.linear.norm() + moving.twist.angular.norm() * body.bounding_radius +
                             0.5 * step * moving.acceleration.norm();
@@ -83,10 +78,10 @@ void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, cons
   const double moved = near.moved(state.pose, body.bounding_radius);
   const double carried_speed = hand.carried_speed(state.pose.position, body.bounding_radius);
   for (int i = 0; i < near.count; ++i) {
-    const int c = near.capsules[static_cast<std::size_t>(i)];
-    const double speed = hand.speed[static_cast<std::size_t>(c)] + carried_speed + body_speed;
+    const int c = near.capsules[i];
+    const double speed = hand.speed[c] + carried_speed + body_speed;
     const double margin = refinements_.sweep ? kMargin + speed * step : kMargin;
-    if (near.clearances[static_cast<std::size_t>(i)] - moved > margin) continue;
+    if (near.clearances[i] - moved > margin) continue;
     const Capsule in_world = hand.capsule(c), in_body = moving.to_local(in_world);
     for (int shape = 0; shape < shapes; ++shape)
       find_touch({hand, c, in_world, in_body, near.body, shape, moving, refinements_}, step, margin, before);
@@ -97,8 +92,7 @@ void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, cons
 /// that it meets with its present distance n.(a(s) - point) - r.
 void ContactFinder::find_touch(const TouchingPair& pair, double step, double margin,
                                const std::vector<Contact>& before) {
-  const PlacedCollider& collider =
-      geometry_.colliders[static_cast<std::size_t>(pair.body)][static_cast<std::size_t>(pair.shape)];
+  const PlacedCollider& collider = geometry_.colliders[pair.body][pair.shape];
   const Capsule in_shape = collider.to_shape(pair.in_body);
   ClosestFeatures features = collider.closest(in_shape, margin);
   if (features.distance > margin) return;
@@ -123,7 +117,8 @@ std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, co
   const auto separation = [&](double time) -> std::optional<Separation<ClosestFeatures>> {
     const Capsule then = pair.hand.capsule(pair.capsule, time);
     const Pose pose = moving.at(time);
-    const ClosestFeatures features = collider.closest(collider.to_shape(to_local(pose, then)), margin);
+    const Capsule in_body_then{pose.to_local(then.start), pose.to_local(then.end), then.radius};
+    const ClosestFeatures features = collider.closest(collider.to_shape(in_body_then), margin);
     if (features.distance > margin) return std::nullopt;
     const ClosestFeatures in_body = collider.to_body(features);
     const Vector3 normal = pose.orientation * in_body.normal;
@@ -153,7 +148,7 @@ void ContactFinder::touch(const TouchingPair& pair, const ClosestFeatures& featu
   Contact* now = &found_[found_count_];
   const int found = update_god_objects(pair, features, span, memory_, count, now);
   for (int i = 0; apart && i < found; ++i) now[i].ignored = now[i].struck = false;
-  found_count_ += static_cast<std::size_t>(found);
+  found_count_ += found;
 }
 
 }  // namespace mrhi

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "closest_features.h"
-#include "god_object.h"
 #include "mr_hand_interaction/collision/contact.h"
+#include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/scene/scene.h"
 #include "neighbours.h"
@@ -13,6 +13,35 @@
 #include "step_motion.h"
 
 namespace mrhi {
+
+/// Gap beyond which a contact loses its memory [m].
+constexpr double kSeparation = 0.0005;
+
+/// One capsule of a hand near one shape of a body, and how their contact is modelled.
+struct TouchingPair {
+  const MovingHand& hand;
+  int capsule;
+  const Capsule& in_world;  // at the step's start
+  const Capsule& in_body;   // the same in the body's frame
+  int body;
+  int shape;
+  const MovingBody& moving;
+  const ContactConfiguration& refinements;
+
+  ContactKey key(int point) const {
+    return {static_cast<std::uint8_t>(point), static_cast<std::uint8_t>(shape),
+            static_cast<std::uint8_t>(capsule), static_cast<std::uint8_t>(hand.slot),
+            static_cast<std::uint16_t>(body)};
+  }
+};
+
+/// God objects of a pair (Zilles & Salisbury 1995, a point per touch): turns the closest features of now
+/// (body frame) into one contact, or two where the capsule lies along a face, and carries the memory of the
+/// pair's `count` contacts `before`, in the last step, over. A god object stays on the face that the phalanx
+/// entered by, however deep the phalanx goes, and moves with it only where friction lets it (response) or
+/// where the phalanx rolls. Writes the contacts to `now`, which holds two, and returns how many there are.
+int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
+                       const Contact* before, int count, Contact* now);
 
 /// Finds what each hand touches, or is about to touch in the step.
 class ContactFinder {

@@ -38,12 +38,12 @@ void ContactRegion::sort_around() {
     const RegionPoint point = (*this)[i];
     const double angle = std::atan2(point.place[1] - v, point.place[0] - u);
     int place = i;
-    for (; place > 0 && angles[static_cast<std::size_t>(place - 1)] > angle; --place) {
+    for (; place > 0 && angles[place - 1] > angle; --place) {
       (*this)[place] = (*this)[place - 1];
-      angles[static_cast<std::size_t>(place)] = angles[static_cast<std::size_t>(place - 1)];
+      angles[place] = angles[place - 1];
     }
     (*this)[place] = point;
-    angles[static_cast<std::size_t>(place)] = angle;
+    angles[place] = angle;
   }
 }
 
@@ -121,15 +121,15 @@ double spread_of(std::array<Place, 4> corners, int count) {
   }
   Place middle{};
   for (int i = 0; i < count; ++i)
-    for (std::size_t k = 0; k < 2; ++k) middle[k] += corners[static_cast<std::size_t>(i)][k] / count;
+    for (std::size_t k = 0; k < 2; ++k) middle[k] += corners[i][k] / count;
   std::array<double, 4> away{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+  for (int i = 0; i < count; ++i) {
     corners[i] = {corners[i][0] - middle[0], corners[i][1] - middle[1]};
     away[i] = std::sqrt(corners[i][0] * corners[i][0] + corners[i][1] * corners[i][1]);
   }
   double moment = 0.0, area = 0.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    const std::size_t next = i + 1 < static_cast<std::size_t>(count) ? i + 1 : 0;
+  for (int i = 0; i < count; ++i) {
+    const int next = (i + 1) % count;
     const double x = corners[next][0] - corners[i][0], y = corners[next][1] - corners[i][1];
     const double length = std::sqrt(x * x + y * y);
     const double distance = cross({}, corners[i], corners[next]) / length;

@@ -1,4 +1,4 @@
-#include "flat_face.h"
+#include "contact_region.h"
 
 #include <algorithm>
 
@@ -108,14 +108,11 @@ class Clipping {
   /// tilted.
   void take_polygon() {
     const int corners = other_.is(Outline::line) ? 2 : 4;
-    for (int k = 0; k < corners; ++k) {
-      const auto i = static_cast<std::size_t>(k);
+    for (int i = 0; i < corners; ++i) {
       const double x = kCorner[i][0], y = kCorner[i][1];
-      polygon_.add(
-          {{{middle_[0] + x * side_[0][0] + y * side_[1][0], middle_[1] + x * side_[0][1] + y * side_[1][1]}},
-           0.0,
-           corner_name(other_.corners[i], !frame_is_a_),
-           k});
+      const Place place{
+          {middle_[0] + x * side_[0][0] + y * side_[1][0], middle_[1] + x * side_[0][1] + y * side_[1][1]}};
+      polygon_.add({place, 0.0, corner_name(other_.corners[i], !frame_is_a_), i});
     }
   }
   /// True for the second corner of a line, which starts no edge.
@@ -137,17 +134,16 @@ class Clipping {
   std::uint8_t crossing_feature(int line, int border) const {
     if (line >= 4) {
       const int next = line - 4 == (border + 1) % 4 ? line - 4 : border;
-      return corner_name(frame_.corners[static_cast<std::size_t>(next)], frame_is_a_);
+      return corner_name(frame_.corners[next], frame_is_a_);
     }
-    return crossing(frame_.edges[static_cast<std::size_t>(border)],
-                    other_.edges[static_cast<std::size_t>(line)]);
+    return crossing(frame_.edges[border], other_.edges[line]);
   }
   /// Clips by one border (Sutherland & Hodgman 1974). Corners outside by less than the tolerance stay, and
   /// count as on the border. With b = sign x_d - half_d of either end, the crossing is at the fraction b_from
   /// / (b_from - b_to): the signs differ, so that nothing cancels. Its coordinate on the border is set
   /// exactly for the next border. If no corner is outside, the polygon is unchanged, with its names.
   void clip(int border) {
-    const Border side = kBorders[static_cast<std::size_t>(border)];
+    const Border side = kBorders[border];
     const std::size_t d = side.dimension;
     const auto beyond = [&](const RegionPoint& c) { return side.sign * c.place[d] - frame_.half[d]; };
     bool within = true;
@@ -214,7 +210,7 @@ class Clipping {
   /// ends only if that is not a corner, which the next edge adds: every corner once.
   void add_chord(const RegionPoint& from, const RegionPoint& to) {
     const Place start = from.place, along{{to.place[0] - start[0], to.place[1] - start[1]}};
-    const int edge = other_.edges[static_cast<std::size_t>(from.line)];
+    const int edge = other_.edges[from.line];
     const double a = along[0] * along[0] + along[1] * along[1];
     const double b = start[0] * along[0] + start[1] * along[1];
     const double c = start[0] * start[0] + start[1] * start[1] - frame_.half[0] * frame_.half[0];

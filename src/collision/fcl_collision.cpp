@@ -93,7 +93,7 @@ BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
 
 /// The sphere is a box to FCL's tree; the object must be registered but once.
 void BroadPhase::update(int index, const Vector3& centre, double radius) {
-  Impl::Body& body = impl_->bodies.at(static_cast<std::size_t>(index));
+  Impl::Body& body = impl_->bodies.at(index);
   body.sphere->radius = radius;
   place(body.object, *body.sphere, centre);
   if (!body.registered) {

@@ -1,4 +1,4 @@
-#include "god_object.h"
+#include "contact_finder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,6 @@ namespace {
 /// Smallest cosine between the normals of successive steps of a phalanx that slides over a surface. A larger
 /// turn means that the nearest surface is no longer the one entered by, and the entry face is kept.
 constexpr double kMinSameFaceCosine = 0.5;
-/// Largest speed of a contact at rest [m/s].
-constexpr double kRestingSpeed = 1e-9;
 
 /// The plane of the face that the phalanx pushes on, in the body's frame.
 struct ContactPlane {
@@ -205,17 +203,6 @@ int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features
   }
   share_load(now[0], now[1]);
   return 2;
-}
-
-/// Eq. 8's v is hardly ever exactly 0: rounding of speeds near 1 m/s is some 1e-16 m/s.
-Approach classify(double normal_velocity) {
-  if (normal_velocity < -kRestingSpeed) return Approach::colliding;
-  return normal_velocity > kRestingSpeed ? Approach::separating : Approach::resting;
-}
-
-/// Eq. 7: o' + w x (c - o).
-Vector3 object_velocity(const Twist& twist, const Vector3& centre, const Vector3& point) {
-  return twist.linear + twist.angular.cross(point - centre);
 }
 
 }  // namespace mrhi

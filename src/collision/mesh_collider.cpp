@@ -36,8 +36,8 @@ std::vector<MeshShape> parts_of(const TriangleMesh& mesh) {
 class GuessMemory {
  public:
   explicit GuessMemory(const MeshSurface& surface)
-      : corner_(surface.min()),
-        per_metre_(kCells / std::max(1e-9, (surface.max() - surface.min()).maxCoeff())) {
+      : corner_(surface.bounds().min()),
+        per_metre_(kCells / std::max(1e-9, surface.bounds().sizes().maxCoeff())) {
     for (std::atomic<int>& part : parts_) part.store(-1, std::memory_order_relaxed);
   }
   std::atomic<int>& at(const Segment& segment) {
@@ -127,7 +127,7 @@ class NearMemory {
 struct MeshCollider::Impl {
   explicit Impl(const TriangleMesh& mesh) : shape(mesh), parts(parts_of(mesh)), guesses(shape.surface) {
     for (const MeshShape& part : parts)
-      deepest = std::max(deepest, 0.5 * (part.surface.max() - part.surface.min()).minCoeff());
+      deepest = std::max(deepest, 0.5 * part.surface.bounds().sizes().minCoeff());
   }
 
   MeshNearest nearest(const MeshShape& of, const Segment& segment, double range) const {
@@ -164,9 +164,8 @@ struct MeshCollider::Impl {
 
 /// A face that has the nearest place, or one beside it.
 int MeshCollider::Impl::face_at(const MeshShape& of, const SurfaceNearest& nearest) {
-  const auto index = static_cast<std::size_t>(nearest.index);
   if (nearest.part == SurfacePart::face) return nearest.index;
-  if (nearest.part == SurfacePart::edge) return of.surface.edges()[index].faces[0];
+  if (nearest.part == SurfacePart::edge) return of.surface.edges()[nearest.index].faces[0];
   return of.surface.face_at_corner(nearest.index);
 }
 
@@ -244,7 +243,7 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
   const Segment segment(capsule);
   if (surface.is_beyond(segment, capsule.radius + margin)) return std::nullopt;
   const bool has_parts = !impl_->parts.empty();
-  const bool may_be_deep = surface.closed() && surface.in_bounds(segment.middle());
+  const bool may_be_deep = surface.closed() && surface.bounds().contains(segment.middle());
   const double deep = has_parts ? std::max(capsule.radius + margin, impl_->deepest) : kUnlimited;
   const MeshNearest search =
       impl_->nearest(impl_->shape, segment, may_be_deep ? deep : capsule.radius + margin);
@@ -280,9 +279,9 @@ AxisSpan MeshCollider::span(const Capsule& capsule, const ClosestFeatures& featu
   const Segment axis(capsule);
   const double s = features.axis_parameter;
   const MeshSurface& surface = impl_->shape.surface;
-  const bool is_face = features.part >= 0 && slot(features.part) < surface.faces().size();
+  const bool is_face = features.part >= 0 && features.part < static_cast<int>(surface.faces().size());
   if (!is_face || axis.along.isZero(0.0)) return {s, s};
-  const Stretch over = surface.over(surface.faces()[slot(features.part)], axis, s);
+  const Stretch over = surface.over(surface.faces()[features.part], axis, s);
   if ((over.s1 - over.s0) * axis.along.norm() < kMinFlatLength) return {s, s};
   return {std::min(std::max(over.s0, 0.0), s), std::max(std::min(over.s1, 1.0), s)};
 }

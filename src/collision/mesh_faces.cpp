@@ -54,7 +54,7 @@ std::vector<DirectedSide> sides_of(const TriangleMesh& mesh) {
 TriangleMesh sorted(const TriangleMesh& mesh) {
   std::vector<char> used(mesh.vertices.size(), 0);
   for (const std::array<int, 3>& triangle : mesh.triangles)
-    for (const int v : triangle) used[static_cast<std::size_t>(v)] = 1;
+    for (const int v : triangle) used[v] = 1;
   std::vector<std::size_t> order(mesh.vertices.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::sort(order.begin(), order.end(),
@@ -68,7 +68,7 @@ TriangleMesh sorted(const TriangleMesh& mesh) {
     renamed[v] = static_cast<int>(result.vertices.size()) - 1;
   }
   for (std::array<int, 3> triangle : mesh.triangles) {
-    for (int& v : triangle) v = renamed[static_cast<std::size_t>(v)];
+    for (int& v : triangle) v = renamed[v];
     if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
     std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
     result.triangles.push_back(triangle);
@@ -85,9 +85,7 @@ class Neighbourhood {
   /// and any pairing closes it.
   explicit Neighbourhood(const TriangleMesh& mesh) : beyond_(mesh.triangles.size()) {
     const std::vector<DirectedSide> sides = sides_of(mesh);
-    const auto set = [this](const Side& of, const Side& beyond) {
-      beyond_[static_cast<std::size_t>(of.triangle)][static_cast<std::size_t>(of.side)] = beyond;
-    };
+    const auto set = [this](const Side& of, const Side& beyond) { beyond_[of.triangle][of.side] = beyond; };
     for (auto first = sides.begin(); first != sides.end();) {
       const auto last = std::find_if(first, sides.end(), [&](const auto& s) { return !s.same_line(*first); });
       auto up = first, down = std::find_if(first, last, [](const auto&s) { return s.down; });
@@ -100,7 +98,7 @@ class Neighbourhood {
   }
 
   const Side& beyond(int triangle, int side) const {
-    return beyond_[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(side)];
+    return beyond_[triangle][static_cast<std::size_t>(side)];
   }
   bool closed() const { return closed_; }        ///< every side has one beyond it, that runs the other way
   bool one_piece() const { return one_piece_; }  ///< every triangle is reached from every other
@@ -115,9 +113,9 @@ class Neighbourhood {
     while (!open.empty()) {
       const int triangle = open.back();
       open.pop_back();
-      for (const Side& next : beyond_[static_cast<std::size_t>(triangle)]) {
-        if (!next.exists() || reached[static_cast<std::size_t>(next.triangle)] != 0) continue;
-        reached[static_cast<std::size_t>(next.triangle)] = 1;
+      for (const Side& next : beyond_[triangle]) {
+        if (!next.exists() || reached[next.triangle] != 0) continue;
+        reached[next.triangle] = 1;
         open.push_back(next.triangle);
         ++count;
       }
@@ -167,25 +165,24 @@ class FaceFinder {
     std::vector<int> order(mesh.triangles.size());
     std::iota(order.begin(), order.end(), 0);
     for (std::size_t t = 0; t < areas_.size(); ++t) {
-      const auto corner = [&](std::size_t i) { return mesh.vertices[slot(mesh.triangles[t][i])]; };
+      const auto corner = [&](std::size_t i) { return mesh.vertices[mesh.triangles[t][i]]; };
       areas_[t] = (corner(1) - corner(0)).cross(Vector3(corner(2) - corner(0)));
     }
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-      return areas_[slot(a)].squaredNorm() > areas_[slot(b)].squaredNorm();
-    });
-    if (order.empty() || areas_[slot(order.front())].norm() == 0.0)
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return areas_[a].squaredNorm() > areas_[b].squaredNorm(); });
+    if (order.empty() || areas_[order.front()].norm() == 0.0)
       throw std::invalid_argument("mesh has no triangle with an area");
     for (const int triangle : order) {
-      if (face_of_[slot(triangle)] < 0) grow(triangle);
+      if (face_of_[triangle] < 0) grow(triangle);
     }
   }
 
   const std::vector<Plane>& planes() const { return planes_; }
-  int face_of(int triangle) const { return face_of_[slot(triangle)]; }
+  int face_of(int triangle) const { return face_of_[triangle]; }
 
  private:
   const Vector3& corner(int triangle, int i) const {
-    return mesh_.vertices[slot(mesh_.triangles[slot(triangle)][slot(i % 3)])];
+    return mesh_.vertices[mesh_.triangles[triangle][i % 3]];
   }
 
   /// Over the neighbours that are flat beside what is there, as long as they lie on the plane of all: the
@@ -200,7 +197,7 @@ class FaceFinder {
     for (std::size_t next = 0; next < open.size(); ++next) {
       for (int side = 0; side < 3; ++side) {
         const Side beyond = neighbourhood_.beyond(open[next], side);
-        if (!beyond.exists() || face_of_[slot(beyond.triangle)] >= 0) continue;
+        if (!beyond.exists() || face_of_[beyond.triangle] >= 0) continue;
         if (!goes_on(open[next], side, beyond) || !on_plane(beyond.triangle, planes_.back())) continue;
         take(beyond.triangle, face);
         open.push_back(beyond.triangle);
@@ -208,9 +205,9 @@ class FaceFinder {
     }
   }
   void take(int triangle, int face) {
-    face_of_[slot(triangle)] = face;
+    face_of_[triangle] = face;
     const Vector3 centre = (corner(triangle, 0) + corner(triangle, 1) + corner(triangle, 2)) / 3.0;
-    planes_.back().add(areas_[slot(triangle)], centre);
+    planes_.back().add(areas_[triangle], centre);
   }
 
   /// True if two neighbouring triangles are in one plane, or one is too thin to have a direction of its own.
@@ -219,7 +216,7 @@ class FaceFinder {
   /// that face each other (A.B <= 0) are a fold.
   bool goes_on(int triangle, int side, const Side& beyond) const {
     if (is_needle(beyond.triangle, beyond.side) || is_needle(triangle, side)) return true;
-    const Vector3 &area = areas_[slot(triangle)], &other = areas_[slot(beyond.triangle)];
+    const Vector3 &area = areas_[triangle], &other = areas_[beyond.triangle];
     if (area.dot(other) <= 0.0) return false;
     const Vector3 apex = corner(triangle, side + 2), other_apex = corner(beyond.triangle, beyond.side + 2);
     const Vector3 across = other_apex - apex;
@@ -231,7 +228,7 @@ class FaceFinder {
   /// Doubled area / side = height of the apex above it: a thousandth of the tolerance is no height.
   bool is_needle(int triangle, int side) const {
     const double length = (corner(triangle, side + 1) - corner(triangle, side)).norm();
-    return areas_[slot(triangle)].norm() <= tolerance_ * 1e-3 * length;
+    return areas_[triangle].norm() <= tolerance_ * 1e-3 * length;
   }
   bool on_plane(int triangle, const Plane& plane) const {
     for (int i = 0; i < 3; ++i)
@@ -266,10 +263,10 @@ class SeamFinder {
         const bool twice =
             beyond.exists() && std::make_pair(beyond.triangle, beyond.side) < std::make_pair(t, k);
         if (face == other || twice) continue;
-        const std::array<int, 3>& triangle = mesh.triangles[slot(t)];
-        pieces_.push_back({triangle[slot(k)], triangle[slot((k + 1) % 3)], face, other, false});
+        const std::array<int, 3>& triangle = mesh.triangles[t];
+        pieces_.push_back({triangle[k], triangle[(k + 1) % 3], face, other, false});
         for (const int end : {pieces_.back().from, pieces_.back().to})
-          around_[slot(end)].push_back(static_cast<int>(pieces_.size()) - 1);
+          around_[end].push_back(static_cast<int>(pieces_.size()) - 1);
       }
     }
     for (int v = 0; v < static_cast<int>(around_.size()); ++v)
@@ -288,29 +285,29 @@ class SeamFinder {
 
   /// Two pieces meet here and part the same two faces; or there is no piece, and the vertex is within a face.
   bool is_on_the_way(int vertex) const {
-    const std::vector<int>& pieces = around_[slot(vertex)];
+    const std::vector<int>& pieces = around_[vertex];
     if (pieces.size() != 2) return pieces.empty();
-    const Piece &a = pieces_[slot(pieces[0])], &b = pieces_[slot(pieces[1])];
+    const Piece &a = pieces_[pieces[0]], &b = pieces_[pieces[1]];
     return std::minmax(a.face, a.other) == std::minmax(b.face, b.other);
   }
   void follow_from(int corner) {
-    for (const int piece : around_[slot(corner)])
-      if (!pieces_[slot(piece)].followed) follow(piece, corner);
+    for (const int piece : around_[corner])
+      if (!pieces_[piece].followed) follow(piece, corner);
   }
   /// From corner to corner, in either direction; the seam is turned round at the end if it began against its
   /// first piece, so that its first face is on its left.
   void follow(int piece, int start) {
-    Seam seam{pieces_[slot(piece)].face, pieces_[slot(piece)].other, {start}};
-    const bool along = pieces_[slot(piece)].from == start;
+    Seam seam{pieces_[piece].face, pieces_[piece].other, {start}};
+    const bool along = pieces_[piece].from == start;
     for (int vertex = start; piece >= 0;) {
-      Piece& now = pieces_[slot(piece)];
+      Piece& now = pieces_[piece];
       now.followed = true;
       vertex = now.from == vertex ? now.to : now.from;
       seam.vertices.push_back(vertex);
       piece = -1;
       if (!is_on_the_way(vertex)) break;
-      for (const int next : around_[slot(vertex)])
-        if (!pieces_[slot(next)].followed) piece = next;
+      for (const int next : around_[vertex])
+        if (!pieces_[next].followed) piece = next;
     }
     if (!along) std::reverse(seam.vertices.begin(), seam.vertices.end());
     straighten(seam.vertices);
@@ -350,11 +347,11 @@ class SeamFinder {
   /// back would seem straight.
   std::pair<std::size_t, double> farthest(const std::vector<int>& line, std::size_t from,
                                           std::size_t to) const {
-    const Vector3& start = mesh_.vertices[slot(line[from])];
-    const Vector3 along = (mesh_.vertices[slot(line[to])] - start).normalized();
+    const Vector3& start = mesh_.vertices[line[from]];
+    const Vector3 along = (mesh_.vertices[line[to]] - start).normalized();
     std::pair<std::size_t, double> found{from, 0.0};
     for (std::size_t i = from + 1; i < to; ++i) {
-      const Vector3 offset = mesh_.vertices[slot(line[i])] - start;
+      const Vector3 offset = mesh_.vertices[line[i]] - start;
       const double part = std::max(0.0, along.dot(offset));
       const double distance = (offset - part * along).norm();
       if (distance > found.second) found = {i, distance};
@@ -380,13 +377,13 @@ double corner_angle(const Vector3& a, const Vector3& b) {
 std::vector<Vector3> vertex_normals(const TriangleMesh& mesh, const FaceFinder& faces) {
   std::vector<Vector3> normals(mesh.vertices.size(), Vector3::Zero());
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    const std::array<int, 3>& triangle = mesh.triangles[slot(t)];
-    const Vector3& normal = faces.planes()[slot(faces.face_of(t))].normal();
+    const std::array<int, 3>& triangle = mesh.triangles[t];
+    const Vector3& normal = faces.planes()[faces.face_of(t)].normal();
     for (std::size_t i = 0; i < 3; ++i) {
-      const Vector3& corner = mesh.vertices[slot(triangle[i])];
-      normals[slot(triangle[i])] += corner_angle(mesh.vertices[slot(triangle[(i + 1) % 3])] - corner,
-                                                 mesh.vertices[slot(triangle[(i + 2) % 3])] - corner) *
-                                    normal;
+      const Vector3& corner = mesh.vertices[triangle[i]];
+      normals[triangle[i]] += corner_angle(mesh.vertices[triangle[(i + 1) % 3]] - corner,
+                                           mesh.vertices[triangle[(i + 2) % 3]] - corner) *
+                              normal;
     }
   }
   return normals;
@@ -409,7 +406,7 @@ FlatFaces merge_coplanar_triangles(const TriangleMesh& unsorted) {
   for (const Plane& plane : faces.planes()) result.faces.push_back({plane.normal(), plane.height()});
   std::vector<int> corner_of(mesh.vertices.size(), -1);
   for (const Seam& seam : lines.seams())
-    for (const int v : seam.vertices) corner_of[slot(v)] = 0;
+    for (const int v : seam.vertices) corner_of[v] = 0;
   const std::vector<Vector3> normals = vertex_normals(mesh, faces);
   for (std::size_t v = 0; v < corner_of.size(); ++v) {
     if (corner_of[v] < 0) continue;
@@ -420,7 +417,7 @@ FlatFaces merge_coplanar_triangles(const TriangleMesh& unsorted) {
   for (const Seam& seam : lines.seams()) {
     for (std::size_t i = 1; i < seam.vertices.size(); ++i) {
       result.edges.push_back(
-          {corner_of[slot(seam.vertices[i - 1])], corner_of[slot(seam.vertices[i])], seam.face, seam.other});
+          {corner_of[seam.vertices[i - 1]], corner_of[seam.vertices[i]], seam.face, seam.other});
     }
   }
   return result;

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "contact_region.h"
-#include "flat_face.h"
 #include "mesh_tree.h"
 
 namespace mrhi {
@@ -158,7 +157,7 @@ struct Probes {
   void of_mesh(const MeshSurface& surface, int part) const {
     const int index = part - static_cast<int>(surface.faces().size());
     if (index < 0) return;
-    const MeshSurface::Edge& edge = surface.edges()[static_cast<std::size_t>(index)];
+    const MeshSurface::Edge& edge = surface.edges()[index];
     const Vector3 start = probing.pose * edge.start, end = probing.pose * Vector3(edge.start + edge.along);
     if (surface.is_first_edge(index, edge.corners[0])) see(Probe::corner(start, edge.corners[0]));
     if (surface.is_first_edge(index, edge.corners[1])) see(Probe::corner(end, edge.corners[1]));
@@ -286,10 +285,8 @@ void add_region(const ProbeContacts& contacts, const ProbeContact& deepest, int 
   ContactRegion region;
   const auto take = [&](const ProbeContact& contact) {
     for (int i = 0; i < region.count; ++i)
-      if (taken[static_cast<std::size_t>(i)]->feature == contact.feature &&
-          taken[static_cast<std::size_t>(i)]->point == contact.point)
-        return;
-    taken[static_cast<std::size_t>(region.count)] = &contact;
+      if (taken[i]->feature == contact.feature && taken[i]->point == contact.point) return;
+    taken[region.count] = &contact;
     const Vector3 offset = contact.point - deepest.point;
     region.add({{{u.dot(offset), v.dot(offset)}}, contact.depth, static_cast<std::uint8_t>(region.count), 0});
   };
@@ -316,8 +313,7 @@ Manifold chosen(const ProbeContacts& contacts, bool convex) {
   Names named{};
   auto deepest = contacts.deepest(-1e300, [](const ProbeContact&) { return true; });
   for (int region = 0; deepest; ++region) {
-    (region == 0 ? manifold.normal : manifold.other_normals[static_cast<std::size_t>(region - 1)]) =
-        deepest->normal;
+    (region == 0 ? manifold.normal : manifold.other_normals[region - 1]) = deepest->normal;
     add_region(contacts, *deepest, region, named, manifold);
     if (convex || region + 1 == Manifold::kMaxRegions) break;
     deepest = contacts.deepest(0.0, [&](const ProbeContact& contact) {

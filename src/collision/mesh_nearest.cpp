@@ -114,18 +114,18 @@ NearParts MeshNearest::near_parts(const MeshTree& tree) const {
       });
   NearParts near;
   const auto add = [&](int part) {
-    const auto end = near.parts.begin() + static_cast<std::ptrdiff_t>(near.count);
+    const auto end = near.parts.begin() + near.count;
     if (std::find(near.parts.begin(), end, part) != end) return;
     if (near.count < NearParts::kCapacity) near.parts[near.count] = part;
     ++near.count;
   };
-  std::sort(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(face_count), before);
+  std::sort(faces.begin(), faces.begin() + face_count, before);
   for (std::size_t i = 0; i < face_count; ++i)
     if (faces[i].distance < bound) add(faces[i].part);
   for (std::size_t i = 0; i < edge_count; ++i) {
     if (edges[i].distance >= bound) continue;
     add(edges[i].part);
-    for (const int face : surface_.edges()[static_cast<std::size_t>(edges[i].part - faces_)].faces) add(face);
+    for (const int face : surface_.edges()[edges[i].part - faces_].faces) add(face);
   }
   if (near.count > NearParts::kCapacity) return {};
   near.start = segment_.start, near.end = segment_.end();
@@ -147,12 +147,12 @@ bool MeshNearest::is_below(const MeshTree::Node& node, double limit) const {
 /// an edge along f.
 bool MeshNearest::is_too_far(int part, double limit) const {
   if (part < faces_) {
-    const MeshSurface::Face& face = surface_.faces()[static_cast<std::size_t>(part)];
+    const MeshSurface::Face& face = surface_.faces()[part];
     const double start = face.normal.dot(segment_.start) - face.height;
     const double end = start + face.normal.dot(segment_.along);
     return std::min(start, end) > limit || std::max(start, end) < -limit;
   }
-  const MeshSurface::Edge& edge = surface_.edges()[static_cast<std::size_t>(part - faces_)];
+  const MeshSurface::Edge& edge = surface_.edges()[part - faces_];
   return min_height_ - facing_.dot(edge.start) - std::max(0.0, facing_.dot(edge.along)) > limit;
 }
 
@@ -195,7 +195,7 @@ struct Exit {
 /// and the end with the lesser n.a comes out last: the start if the segment rises, all of it if it is
 /// parallel.
 Exit exit_distance(const Segment& segment, const MeshSurface& surface, int index) {
-  const MeshSurface::Face& face = surface.faces()[static_cast<std::size_t>(index)];
+  const MeshSurface::Face& face = surface.faces()[index];
   const double rise = face.normal.dot(segment.along);
   Exit exit;
   exit.face = index;
@@ -270,7 +270,7 @@ class ExitSearch {
   /// segment is above is no exit.
   bool allowed(double separation) const { return surface_.convex() || separation < kOnSurface; }
   void see_face(int index) {
-    const MeshSurface::Face& face = surface_.faces()[static_cast<std::size_t>(index)];
+    const MeshSurface::Face& face = surface_.faces()[index];
     const double separation =
         face.normal.dot(segment_.start) - face.height + std::min(face.normal.dot(segment_.along), 0.0);
     const bool better =
@@ -280,7 +280,7 @@ class ExitSearch {
     if (surface_.convex() || exit.through) face_ = exit;
   }
   void see_edge(int index) {
-    const MeshSurface::Edge& edge = surface_.edges()[static_cast<std::size_t>(index)];
+    const MeshSurface::Edge& edge = surface_.edges()[index];
     if (!edge.bulges) return;
     const auto exit = leave_by_edge(segment_, surface_, edge);
     if (!exit || !allowed(exit->distance)) return;

@@ -46,14 +46,12 @@ MeshSurface::MeshSurface(const TriangleMesh& mesh) {
   corners_ = std::move(flat.corners);
   corner_normals_ = std::move(flat.corner_normals);
   closed_ = flat.closed;
-  min_ = Vector3::Constant(1e300), max_ = -min_;
-  for (const Vector3& corner : corners_) min_ = min_.cwiseMin(corner), max_ = max_.cwiseMax(corner);
+  for (const Vector3& corner : corners_) bounds_.extend(corner);
   for (const FlatFaces::Face& face : flat.faces) faces_.push_back({face.normal, face.height, 0, 0, true});
   for (const FlatFaces::Edge& edge : flat.edges) {
-    const Vector3& start = corners_[slot(edge.from)];
+    const Vector3& start = corners_[edge.from];
     const int other = edge.other < 0 ? edge.face : edge.other;
-    edges_.push_back(
-        {start, corners_[slot(edge.to)] - start, {{edge.from, edge.to}}, {{edge.face, other}}, false});
+    edges_.push_back({start, corners_[edge.to] - start, {{edge.from, edge.to}}, {{edge.face, other}}, false});
   }
   add_sides(flat.edges);
   find_bends(flat.one_piece);
@@ -65,26 +63,26 @@ MeshSurface::MeshSurface(const TriangleMesh& mesh) {
 void MeshSurface::add_sides(const std::vector<FlatFaces::Edge>& edges) {
   first_edge_.assign(corners_.size() + 1, 0);
   for (const FlatFaces::Edge& edge : edges) {
-    ++faces_[slot(edge.face)].count;
-    if (edge.other >= 0) ++faces_[slot(edge.other)].count;
-    ++first_edge_[slot(edge.from) + 1], ++first_edge_[slot(edge.to) + 1];
+    ++faces_[edge.face].count;
+    if (edge.other >= 0) ++faces_[edge.other].count;
+    ++first_edge_[edge.from + 1], ++first_edge_[edge.to + 1];
   }
   int first = 0;
   for (Face& face : faces_) face.first = first, first += face.count, face.count = 0;
   for (std::size_t c = 0; c < corners_.size(); ++c) first_edge_[c + 1] += first_edge_[c];
-  sides_.resize(slot(first));
+  sides_.resize(first);
   edges_at_.resize(2 * edges.size());
   std::vector<std::size_t> next(first_edge_);
   for (int e = 0; e < static_cast<int>(edges.size()); ++e) {
     const auto add = [&](int of, const Vector3& along) {
-      Face& face = faces_[slot(of)];
+      Face& face = faces_[of];
       const Vector3 outward = along.cross(face.normal);
-      sides_[slot(face.first + face.count++)] = {outward, outward.dot(edges_[slot(e)].start), e};
+      sides_[face.first + face.count++] = {outward, outward.dot(edges_[e].start), e};
     };
-    const FlatFaces::Edge& edge = edges[slot(e)];
-    add(edge.face, edges_[slot(e)].along);
-    if (edge.other >= 0) add(edge.other, -edges_[slot(e)].along);
-    for (const int corner : {edge.from, edge.to}) edges_at_[next[slot(corner)]++] = e;
+    const FlatFaces::Edge& edge = edges[e];
+    add(edge.face, edges_[e].along);
+    if (edge.other >= 0) add(edge.other, -edges_[e].along);
+    for (const int corner : {edge.from, edge.to}) edges_at_[next[corner]++] = e;
   }
   for (Face& face : faces_) face.convex = is_convex(face);
 }
@@ -106,8 +104,8 @@ void MeshSurface::find_bends(bool one_piece) {
 bool MeshSurface::is_convex(const Face& face) const {
   if (face.count <= 3) return true;
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const Side& side = sides_[slot(i)];
-    const double slack = 2.0 * kFlatness * (max_ - min_).maxCoeff() * side.outward.norm();
+    const Side& side = sides_[i];
+    const double slack = 2.0 * kFlatness * bounds_.sizes().maxCoeff() * side.outward.norm();
     bool behind = true;
     each_corner(face,
                 [&](const Vector3& c) { behind = behind && side.outward.dot(c) <= side.reach + slack; });
@@ -122,7 +120,7 @@ bool MeshSurface::inside(const Face& face, const Vector3& place) const {
   const Seen ray(Segment(Capsule{place, place + any_normal(face.normal), 0.0}), face.normal);
   bool inside = false;
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const double s = ray.crossing(edges_[slot(sides_[slot(i)].edge)]);
+    const double s = ray.crossing(edges_[sides_[i].edge]);
     if (s != 2.0 && s > 0.0) inside = !inside;
   }
   return inside;
@@ -135,7 +133,7 @@ Stretch MeshSurface::around(const Face& face, const Segment& segment, double s) 
   if (segment.along.isZero(0.0)) return stretch;
   const Seen seen(segment, face.normal);
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const double crosses = seen.crossing(edges_[slot(sides_[slot(i)].edge)]);
+    const double crosses = seen.crossing(edges_[sides_[i].edge]);
     if (crosses <= s) stretch.s0 = std::max(stretch.s0, crosses);
     if (crosses > s) stretch.s1 = std::min(stretch.s1, crosses);
   }
@@ -147,7 +145,7 @@ Stretch MeshSurface::over(const Face& face, const Segment& segment, double s) co
   if (!face.convex) return around(face, segment, s);
   Stretch stretch;
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const Side& side = sides_[slot(i)];
+    const Side& side = sides_[i];
     const double x0 = side.outward.dot(segment.start) - side.reach, dx = side.outward.dot(segment.along);
     stretch.clip(x0, dx, 0.0);
     if ((dx == 0.0 && x0 > 0.0) || stretch.s0 > stretch.s1) return {1.0, 0.0};
@@ -160,10 +158,10 @@ int MeshSurface::face_over(int part, const Vector3& place) const {
   int best = -1;
   double least = 1e300;
   each_face_around(part, [&](int index) {
-    const Face& face = faces_[slot(index)];
+    const Face& face = faces_[index];
     double beyond = face.convex || inside(face, place) ? -1e300 : 1.0;
     for (int i = face.first; face.convex && i < face.first + face.count; ++i) {
-      const Side& side = sides_[slot(i)];
+      const Side& side = sides_[i];
       beyond = std::max(beyond, side.outward.dot(place) - side.reach);
     }
     if (beyond < least) least = beyond, best = index;
@@ -194,11 +192,11 @@ Pad MeshSurface::pad(const Segment& axis, const ClosestFeatures& deepest) const 
     double s = deepest.axis_parameter + kOnwards / length, rise = 0.0;
     int index = first;
     for (int count = 0; index >= 0 && count < kMaxFaces; ++count) {
-      const Face& face = faces_[slot(index)];
+      const Face& face = faces_[index];
       double until = side > 0.0 ? 1.0 : 0.0;
       int next = -1;
       for (int i = face.first; i < face.first + face.count; ++i) {
-        const Edge& edge = edges_[slot(sides_[slot(i)].edge)];
+        const Edge& edge = edges_[sides_[i].edge];
         const double crosses = line.crossing(edge);
         if (crosses == 2.0 || side * (crosses - s) <= 0.0 || side * (until - crosses) <= 0.0) continue;
         until = crosses;
@@ -223,7 +221,7 @@ Pad MeshSurface::pad(const Segment& axis, const ClosestFeatures& deepest) const 
 /// segment's place nearest to the plane. If it is straight above the face it is the nearest of all; if not,
 /// an edge or a corner is nearer to the segment, and found by itself.
 SurfaceNearest MeshSurface::nearest_on_face(int index, const Segment& segment) const {
-  const Face& face = faces_[slot(index)];
+  const Face& face = faces_[index];
   SurfaceNearest found;
   const double height = face.normal.dot(segment.start) - face.height, rise = face.normal.dot(segment.along);
   const bool parallel = std::abs(rise) < kParallel;
@@ -248,14 +246,14 @@ SurfaceNearest MeshSurface::nearest_on_face(int index, const Segment& segment) c
 }
 
 SurfaceNearest MeshSurface::nearest_on_edge(int index, const Segment& segment) const {
-  const Edge& edge = edges_[slot(index)];
+  const Edge& edge = edges_[index];
   const SegmentPair nearest = nearest_stretch(segment, edge.start, edge.along);
   SurfaceNearest found;
   if (nearest.t <= 0.0 || nearest.t >= 1.0) {
     // The same for all edges that end here.
     found.part = SurfacePart::corner;
     found.index = edge.corners[nearest.t >= 1.0 ? 1 : 0];
-    found.point = corners_[slot(found.index)];
+    found.point = corners_[found.index];
     const double s = nearest_to(found.point, segment);
     found.stretch = {s, s};
   } else {
@@ -269,9 +267,9 @@ SurfaceNearest MeshSurface::nearest_on_edge(int index, const Segment& segment) c
 }
 
 Vector3 MeshSurface::outward(const SurfaceNearest& nearest) const {
-  if (nearest.part == SurfacePart::face) return faces_[slot(nearest.index)].normal;
-  if (nearest.part == SurfacePart::corner) return corner_normals_[slot(nearest.index)];
-  const std::array<Vector3, 2> normal = normals(edges_[slot(nearest.index)]);
+  if (nearest.part == SurfacePart::face) return faces_[nearest.index].normal;
+  if (nearest.part == SurfacePart::corner) return corner_normals_[nearest.index];
+  const std::array<Vector3, 2> normal = normals(edges_[nearest.index]);
   return normal[0] + normal[1];
 }
 
@@ -283,25 +281,25 @@ Vector3 MeshSurface::outward(const SurfaceNearest& nearest) const {
 bool MeshSurface::is_support(const SurfaceNearest& nearest, const Vector3& gap) const {
   const double clear = kClear * nearest.distance;
   if (nearest.part == SurfacePart::face) {
-    const Face& face = faces_[slot(nearest.index)];
+    const Face& face = faces_[nearest.index];
     if (face.normal.dot(gap) <= 0.0) return false;
     for (int i = face.first; i < face.first + face.count; ++i) {
-      const Side& side = sides_[slot(i)];
+      const Side& side = sides_[i];
       if (side.outward.dot(nearest.point) - side.reach > -kClear * side.outward.squaredNorm()) return false;
     }
     return true;
   }
   if (nearest.part == SurfacePart::edge) {
-    const Edge& edge = edges_[slot(nearest.index)];
+    const Edge& edge = edges_[nearest.index];
     const double length = edge.along.norm();
     const double t = edge.along.dot(nearest.point - edge.start) / (length * length);
     const std::array<Vector3, 2> normal = normals(edge);
     return t > kClear && t < 1.0 - kClear && edge.along.cross(normal[0]).dot(gap) > clear * length &&
            normal[1].cross(edge.along).dot(gap) > clear * length;
   }
-  const std::size_t corner = slot(nearest.index);
+  const std::size_t corner = nearest.index;
   for (std::size_t i = first_edge_[corner]; i < first_edge_[corner + 1]; ++i) {
-    const Edge& edge = edges_[slot(edges_at_[i])];
+    const Edge& edge = edges_[edges_at_[i]];
     const double down = edge.corners[0] == nearest.index ? -edge.along.dot(gap) : edge.along.dot(gap);
     if (down < clear * edge.along.norm()) return false;
   }

@@ -9,11 +9,6 @@
 
 namespace mrhi {
 
-/// Index of a numbered item in a list.
-inline std::size_t slot(int number) {
-  return static_cast<std::size_t>(number);
-}
-
 /// A surface as its flat faces, however these are cut into triangles in a file: a polygon each, with corners
 /// where it bends. Depends on the surface alone, not on the order of its triangles and vertices.
 struct FlatFaces {
@@ -86,28 +81,21 @@ class MeshSurface {
   const std::vector<Edge>& edges() const { return edges_; }
   bool closed() const { return closed_; }  ///< has an inside
   bool convex() const { return convex_; }
-  const Vector3& min() const { return min_; }
-  const Vector3& max() const { return max_; }
-  bool in_bounds(const Vector3& place) const {
-    return (place.array() >= min_.array()).all() && (place.array() <= max_.array()).all();
-  }
+  const Eigen::AlignedBox3d& bounds() const { return bounds_; }
   /// True if no part of the segment is nearer than `reach` to the bounds.
   bool is_beyond(const Segment& segment, double reach) const {
     const Vector3 end = segment.end();
-    return ((segment.start.cwiseMin(end) - max_).array() > reach).any() ||
-           ((min_ - segment.start.cwiseMax(end)).array() > reach).any();
+    return ((segment.start.cwiseMin(end) - bounds_.max()).array() > reach).any() ||
+           ((bounds_.min() - segment.start.cwiseMax(end)).array() > reach).any();
   }
   std::array<Vector3, 2> normals(const Edge& edge) const {
-    return {{faces_[static_cast<std::size_t>(edge.faces[0])].normal,
-             faces_[static_cast<std::size_t>(edge.faces[1])].normal}};
+    return {{faces_[edge.faces[0]].normal, faces_[edge.faces[1]].normal}};
   }
   int face_at_corner(int corner) const {
-    const std::size_t first = first_edge_[static_cast<std::size_t>(corner)];
-    return edges_[static_cast<std::size_t>(edges_at_[first])].faces[0];
+    const std::size_t first = first_edge_[corner];
+    return edges_[edges_at_[first]].faces[0];
   }
-  bool is_first_edge(int edge, int corner) const {
-    return edges_at_[first_edge_[static_cast<std::size_t>(corner)]] == edge;
-  }
+  bool is_first_edge(int edge, int corner) const { return edges_at_[first_edge_[corner]] == edge; }
   /// Number of a part in a list of the faces, then the edges, then the corners.
   int number(const SurfaceNearest& part) const {
     const int faces = static_cast<int>(faces_.size());
@@ -118,8 +106,8 @@ class MeshSurface {
   template <typename See>
   void each_corner(const Face& face, const See& see) const {
     for (int i = face.first; i < face.first + face.count; ++i) {
-      const Edge& edge = edges_[static_cast<std::size_t>(sides_[static_cast<std::size_t>(i)].edge)];
-      for (const int corner : edge.corners) see(corners_[static_cast<std::size_t>(corner)]);
+      const Edge& edge = edges_[sides_[i].edge];
+      for (const int corner : edge.corners) see(corners_[corner]);
     }
   }
 
@@ -153,9 +141,9 @@ class MeshSurface {
   void each_face_around(int part, const See& see) const {
     const int edge = part - static_cast<int>(faces_.size()), corner = edge - static_cast<int>(edges_.size());
     if (edge < 0) return see(part);
-    if (corner < 0) return see(edges_[slot(edge)].faces[0]), see(edges_[slot(edge)].faces[1]);
-    for (std::size_t i = first_edge_[slot(corner)]; i < first_edge_[slot(corner) + 1]; ++i) {
-      const Edge& of = edges_[slot(edges_at_[i])];
+    if (corner < 0) return see(edges_[edge].faces[0]), see(edges_[edge].faces[1]);
+    for (std::size_t i = first_edge_[corner]; i < first_edge_[corner + 1]; ++i) {
+      const Edge& of = edges_[edges_at_[i]];
       see(of.faces[of.corners[0] == corner ? 0 : 1]);
     }
   }
@@ -171,7 +159,7 @@ class MeshSurface {
   std::vector<Edge> edges_;
   std::vector<std::size_t> first_edge_;  // of a corner, in edges_at_
   std::vector<int> edges_at_;
-  Vector3 min_, max_;
+  Eigen::AlignedBox3d bounds_;
   bool closed_ = true, convex_ = true;
 };
 

@@ -13,12 +13,12 @@ template <typename Place, typename Normal>
 void span(const MeshSurface& surface, int part, const Place& place, const Normal& normal) {
   const int faces = static_cast<int>(surface.faces().size());
   if (part < faces) {
-    const MeshSurface::Face& face = surface.faces()[slot(part)];
+    const MeshSurface::Face& face = surface.faces()[part];
     surface.each_corner(face, place);
     normal(face.normal);
   } else {
-    const MeshSurface::Edge& edge = surface.edges()[slot(part - faces)];
-    for (const int corner : edge.corners) place(surface.corners()[slot(corner)]);
+    const MeshSurface::Edge& edge = surface.edges()[part - faces];
+    for (const int corner : edge.corners) place(surface.corners()[corner]);
     for (const Vector3& n : surface.normals(edge)) normal(n);
   }
 }
@@ -78,11 +78,10 @@ MeshTree::MeshTree(const MeshSurface& surface) : parts_(surface.faces().size() +
   std::iota(parts_.begin(), parts_.end(), 0);
   std::vector<Vector3> centres;
   for (const int part : parts_) {
-    Vector3 min = Vector3::Constant(1e300), max = -min;
+    Eigen::AlignedBox3d box;
     span(
-        surface, part, [&](const Vector3& p) { min = min.cwiseMin(p), max = max.cwiseMax(p); },
-        [](const Vector3&) {});
-    centres.emplace_back(0.5 * (min + max));
+        surface, part, [&](const Vector3& p) { box.extend(p); }, [](const Vector3&) {});
+    centres.emplace_back(box.center());
   }
   nodes_.reserve(parts_.size());
   nodes_.emplace_back();
@@ -98,23 +97,21 @@ void MeshTree::build(const MeshSurface& surface, int node, std::vector<Vector3>&
   bound(surface, built, first, last);
   if (last - first <= kLeaf) {
     built.first = first, built.count = last - first;
-    nodes_[slot(node)] = built;
+    nodes_[node] = built;
     return;
   }
-  Vector3 min = Vector3::Constant(1e300), max = -min;
-  for (int i = first; i < last; ++i) {
-    min = min.cwiseMin(centres[slot(parts_[slot(i)])]), max = max.cwiseMax(centres[slot(parts_[slot(i)])]);
-  }
+  Eigen::AlignedBox3d box;
+  for (int i = first; i < last; ++i) box.extend(centres[parts_[i]]);
   int axis = 0;
-  (max - min).maxCoeff(&axis);
+  box.sizes().maxCoeff(&axis);
   const int middle = (first + last) / 2;
   const auto before = [&](int a, int b) {
-    const double x = centres[slot(a)][axis], y = centres[slot(b)][axis];
+    const double x = centres[a][axis], y = centres[b][axis];
     return x != y ? x < y : a < b;
   };
   std::nth_element(parts_.begin() + first, parts_.begin() + middle, parts_.begin() + last, before);
   built.first = static_cast<int>(nodes_.size());
-  nodes_[slot(node)] = built;
+  nodes_[node] = built;
   nodes_.resize(nodes_.size() + 2);
   build(surface, built.first, centres, first, middle);
   build(surface, built.first + 1, centres, middle, last);
@@ -125,12 +122,12 @@ void MeshTree::build(const MeshSurface& surface, int node, std::vector<Vector3>&
 /// out wide.
 void MeshTree::bound(const MeshSurface& surface, Node& node, int first, int last) const {
   const auto each = [&](const auto& place, const auto& normal) {
-    for (int i = first; i < last; ++i) span(surface, parts_[slot(i)], place, normal);
+    for (int i = first; i < last; ++i) span(surface, parts_[i], place, normal);
   };
-  Vector3 min = Vector3::Constant(1e300), max = -min, sum = Vector3::Zero();
-  each([&](const Vector3& p) { min = min.cwiseMin(p), max = max.cwiseMax(p); },
-       [&](const Vector3& n) { sum += n; });
-  node.centre = 0.5 * (min + max);
+  Eigen::AlignedBox3d box;
+  Vector3 sum = Vector3::Zero();
+  each([&](const Vector3& p) { box.extend(p); }, [&](const Vector3& n) { sum += n; });
+  node.centre = box.center();
   node.normal = sum.norm() > 1e-9 ? Vector3(sum.normalized()) : Vector3::UnitZ();
   node.cos_spread = 1.0;
   each(

@@ -34,17 +34,48 @@ class MeshTree {
 
   explicit MeshTree(const MeshSurface& surface);
 
-  const Node& node(int index) const { return nodes_[static_cast<std::size_t>(index)]; }
+  const Node& node(int index) const { return nodes_[index]; }
   /// i in first..first + count of a leaf: a face, or that many and an edge.
-  int part(int i) const { return parts_[static_cast<std::size_t>(i)]; }
+  int part(int i) const { return parts_[i]; }
 
   /// Visits nodes that `wanted(node)`, always in the same order; `see(part)` the parts of leaves.
   template <typename Admits, typename See>
-  void visit(const Admits& admits, const See& see) const;
+  void visit(const Admits& admits, const See& see) const {
+    std::array<int, kMaxLevels> open;
+    std::size_t count = 0;
+    open[count++] = 0;
+    while (count > 0) {
+      const Node& now = node(open[--count]);
+      if (!admits(now)) continue;
+      for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
+      if (now.count == 0) open[count++] = now.first + 1, open[count++] = now.first;
+    }
+  }
 
   /// Visits nodes with cost(node) <= limit(), the lesser first; `see(part)` the parts of leaves.
   template <typename Cost, typename Limit, typename See>
-  void search(const Cost& cost, const Limit& limit, const See& see) const;
+  void search(const Cost& cost, const Limit& limit, const See& see) const {
+    struct Open {
+      int node;
+      double cost;
+    };
+    std::array<Open, kMaxLevels> open;
+    std::size_t count = 0;
+    open[count++] = {0, cost(node(0))};
+    while (count > 0) {
+      const Open next = open[--count];
+      if (next.cost > limit()) continue;
+      const Node& now = node(next.node);
+      if (now.count > 0) {
+        for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
+        continue;
+      }
+      Open near{now.first, cost(node(now.first))}, far{now.first + 1, cost(node(now.first + 1))};
+      if (far.cost < near.cost) std::swap(near, far);
+      if (far.cost <= limit()) open[count++] = far;
+      if (near.cost <= limit()) open[count++] = near;
+    }
+  }
 
  private:
   void build(const MeshSurface& surface, int node, std::vector<Vector3>& centres, int first, int last);
@@ -53,43 +84,6 @@ class MeshTree {
   std::vector<Node> nodes_;
   std::vector<int> parts_;
 };
-
-template <typename Admits, typename See>
-void MeshTree::visit(const Admits& admits, const See& see) const {
-  std::array<int, kMaxLevels> open;
-  std::size_t count = 0;
-  open[count++] = 0;
-  while (count > 0) {
-    const Node& now = node(open[--count]);
-    if (!admits(now)) continue;
-    for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
-    if (now.count == 0) open[count++] = now.first + 1, open[count++] = now.first;
-  }
-}
-
-template <typename Cost, typename Limit, typename See>
-void MeshTree::search(const Cost& cost, const Limit& limit, const See& see) const {
-  struct Open {
-    int node;
-    double cost;
-  };
-  std::array<Open, kMaxLevels> open;
-  std::size_t count = 0;
-  open[count++] = {0, cost(node(0))};
-  while (count > 0) {
-    const Open next = open[--count];
-    if (next.cost > limit()) continue;
-    const Node& now = node(next.node);
-    if (now.count > 0) {
-      for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
-      continue;
-    }
-    Open near{now.first, cost(node(now.first))}, far{now.first + 1, cost(node(now.first + 1))};
-    if (far.cost < near.cost) std::swap(near, far);
-    if (far.cost <= limit()) open[count++] = far;
-    if (near.cost <= limit()) open[count++] = near;
-  }
-}
 
 /// A mesh prepared for contact: its surface, tree and parts.
 struct MeshShape {

@@ -85,23 +85,24 @@ void Neighbours::measure(const HandTrack& hand, const CarriedFrame* carried, Rea
   reach.paths.clear();
   if (!hand.active) return;
   for (int c = 0; c < kCapsules; ++c) {
-    const auto ci = static_cast<std::size_t>(c);
-    const Capsule& to = hand.current.capsules[ci];
-    const Capsule& from = hand.previous.capsules[ci].radius > 0.0 ? hand.previous.capsules[ci] : to;
+    const Capsule& to = hand.current.capsules[c];
+    const Capsule& from = hand.previous.capsules[c].radius > 0.0 ? hand.previous.capsules[c] : to;
     if (to.radius <= 0.0) continue;
     Vector3 start = 0.5 * (from.start + to.start), end = 0.5 * (from.end + to.end);
     const double longer_way =
         std::sqrt(std::max((to.start - from.start).squaredNorm(), (to.end - from.end).squaredNorm()));
     CapsulePath path{c, start, end - start, to.radius + 0.5 * longer_way + 0.25 * hand.path.longest_bend};
     if (carried != nullptr) {
-      start = carried->rotation * start + carried->origin;
-      end = carried->rotation * end + carried->origin;
+      const CarrierMotion& carrier = carried->motion;
+      start = carrier.to_world(start);
+      end = carrier.to_world(end);
       path.start = start, path.along = end - start;
       // Half of the displacement, and all of the turn, whose rotation is that of the start; of both ends.
-      const double arm = std::sqrt(std::max((start - carried->centre).squaredNorm(),
-                                            (end - carried->centre).squaredNorm())) +
-                         path.reach;
-      path.reach += carried->margin + carried->seconds * (0.5 * carried->speed + arm * carried->spin);
+      const double arm =
+          std::sqrt(std::max((start - carrier.centre).squaredNorm(), (end - carrier.centre).squaredNorm())) +
+          path.reach;
+      path.reach += carried->margin + carried->seconds * (0.5 * carrier.twist.linear.norm() +
+                                                          arm * carrier.twist.angular.norm());
     }
     reach.box.extend(start.cwiseMin(end) - Vector3::Constant(path.reach));
     reach.box.extend(start.cwiseMax(end) + Vector3::Constant(path.reach));
@@ -187,13 +188,13 @@ void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
     near_hand_[slot].clear();
     if (reach.paths.empty()) continue;
     for (const int body : broad_phase_.query(reach.box.min(), reach.box.max())) {
-      const PaddedSphere& sphere = padded_[static_cast<std::size_t>(body)];
-      const Pose& pose = bodies[static_cast<std::size_t>(body)].pose;
+      const PaddedSphere& sphere = padded_[body];
+      const Pose& pose = bodies[body].pose;
       const Matrix3 rotation = pose.orientation.toRotationMatrix();
       NearBody near{body, 0, pose, {}, {}};
       for (const CapsulePath& path : reach.paths) {
         if (!path.comes_near(sphere.centre, sphere.radius)) continue;
-        near.add(path.capsule, path.clearance(boxes_[static_cast<std::size_t>(body)], pose, rotation));
+        near.add(path.capsule, path.clearance(boxes_[body], pose, rotation));
       }
       if (near.count > 0) near_hand_[slot].push_back(near);
     }
@@ -206,20 +207,18 @@ void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
 void Neighbours::list_pairs() {
   pairs_.clear();
   for (std::pair<int, int> pair : broad_phase_.pairs()) {
-    const PaddedSphere &first = padded_[static_cast<std::size_t>(pair.first)],
-                       &second = padded_[static_cast<std::size_t>(pair.second)];
+    const PaddedSphere &first = padded_[pair.first], &second = padded_[pair.second];
     const double reach = first.radius + second.radius;
     if ((first.centre - second.centre).squaredNorm() > reach * reach) continue;
-    const bool fixed_first = scene_.bodies[static_cast<std::size_t>(pair.first)].fixed;
-    const bool fixed_second = scene_.bodies[static_cast<std::size_t>(pair.second)].fixed;
+    const bool fixed_first = scene_.bodies[pair.first].fixed;
+    const bool fixed_second = scene_.bodies[pair.second].fixed;
     if (fixed_first && fixed_second) continue;
     if (fixed_second) std::swap(pair.first, pair.second);
     if (!std::binary_search(untouching_.begin(), untouching_.end(), pair)) pairs_.push_back(pair);
   }
   std::sort(pairs_.begin(), pairs_.end());
   is_paired_.assign(scene_.bodies.size(), 0);
-  for (const auto& [a, b] : pairs_)
-    is_paired_[static_cast<std::size_t>(a)] = is_paired_[static_cast<std::size_t>(b)] = 1;
+  for (const auto& [a, b] : pairs_) is_paired_[a] = is_paired_[b] = 1;
   paired_.clear();
   for (std::size_t b = 0; b < is_paired_.size(); ++b)
     if (is_paired_[b]) paired_.push_back(static_cast<int>(b));

@@ -9,6 +9,7 @@
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
+#include "step_motion.h"
 
 namespace mrhi {
 
@@ -58,8 +59,8 @@ struct NearBody {
   std::array<double, kCapsules> clearances;
 
   void add(int capsule, double clearance) {
-    capsules[static_cast<std::size_t>(count)] = static_cast<std::uint8_t>(capsule);
-    clearances[static_cast<std::size_t>(count++)] = clearance;
+    capsules[count] = static_cast<std::uint8_t>(capsule);
+    clearances[count++] = clearance;
   }
   /// At most how far a point of the body, within `radius` of its frame's origin, is from where it was [m].
   ///
@@ -76,11 +77,9 @@ struct NearBody {
 
 /// The frame in which a hand is tracked, halfway through a frame of input.
 struct CarriedFrame {
-  Matrix3 rotation;                ///< in world, at the start
-  Vector3 origin, centre;          ///< of the frame halfway, of the carrier's mass at the start [m]
-  double speed = 0.0, spin = 0.0;  ///< of the carrier [m/s], [rad/s]
-  double seconds = 0.0;            ///< of the frame of input
-  double margin = 0.0;             ///< largest distance of what the carrier does from that [m]
+  CarrierMotion motion;  ///< at the start, but with the origin halfway
+  double seconds;        ///< of the frame of input
+  double margin;         ///< largest distance of what the carrier does from that [m]
 };
 
 /// Broad phase: lists the pairs of bodies, and of hands and bodies, that may touch. Each body has a sphere
@@ -104,9 +103,7 @@ class Neighbours {
   bool may_meet(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies, double seconds) const;
 
   /// Bodies near the hand in `slot`, ascending.
-  const std::vector<NearBody>& near_hand(int slot) const {
-    return near_hand_[static_cast<std::size_t>(slot)];
-  }
+  const std::vector<NearBody>& near_hand(int slot) const { return near_hand_[slot]; }
   /// Pairs of bodies near each other, sorted. The first is a fixture or listed before the second, which is
   /// free.
   const std::vector<std::pair<int, int>>& pairs() const { return pairs_; }

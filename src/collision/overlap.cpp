@@ -118,9 +118,8 @@ std::vector<int> mechanisms(const Scene& scene) {
   for (std::size_t b = 0; b < first.size(); ++b)
     if (scene.bodies[b].fixed) first[b] = Joint::kWorld;
   for (const Joint& joint : scene.joints) {
-    const int one = joint.parent == Joint::kWorld ? joint.parent
-                                                  : first[static_cast<std::size_t>(joint.parent)],
-              other = first[static_cast<std::size_t>(joint.child)];
+    const int one = joint.parent == Joint::kWorld ? joint.parent : first[joint.parent],
+              other = first[joint.child];
     std::replace(first.begin(), first.end(), std::max(one, other), std::min(one, other));
   }
   return first;

@@ -90,7 +90,7 @@ class ConvexAxis {
   double separation_across() const {
     double across = -1e300;
     for (int i = 0; i < flats_; ++i) {
-      const Flat& flat = flat_[static_cast<std::size_t>(i)];
+      const Flat& flat = flat_[i];
       if (std::abs(flat.normal.dot(normal_)) < 0.5) across = std::max(across, flat.separation);
     }
     return across;
@@ -180,7 +180,7 @@ class ConvexAxis {
   };
 
   void take_flat(double separation, const Vector3& n) {
-    flat_[static_cast<std::size_t>(flats_++)] = {n, separation};
+    flat_[flats_++] = {n, separation};
     take(separation, n);
   }
   void take(double separation, const Vector3& n) {

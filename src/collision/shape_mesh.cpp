@@ -15,8 +15,7 @@ std::optional<Capsule> Mesh::core() const {
 double Mesh::bounding_radius() const {
   double squared = 0.0;
   for (const std::array<int, 3>& triangle : triangles->triangles)
-    for (const int v : triangle)
-      squared = std::max(squared, triangles->vertices[static_cast<std::size_t>(v)].squaredNorm());
+    for (const int v : triangle) squared = std::max(squared, triangles->vertices[v].squaredNorm());
   return std::sqrt(squared);
 }
 

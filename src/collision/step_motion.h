@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/math.h"
@@ -95,11 +96,10 @@ struct MovingHand {
 
   /// At the step's start.
   Capsule capsule(int c) const {
-    const auto i = static_cast<std::size_t>(c);
-    const Capsule own{start[i].from + start[i].displacement(place), end[i].from + end[i].displacement(place),
-                      radius[i]};
+    const Capsule own{start[c].from + start[c].displacement(place), end[c].from + end[c].displacement(place),
+                      radius[c]};
     if (carrier == nullptr) return own;
-    return {carrier->to_world(own.start), carrier->to_world(own.end), radius[i]};
+    return {carrier->to_world(own.start), carrier->to_world(own.end), radius[c]};
   }
   /// Limit of what the carrier adds to `speed`, of a phalanx that comes within `distance` of a point [m/s].
   double carried_speed(const Vector3& point, double distance) const {
@@ -116,31 +116,27 @@ struct MovingHand {
   }
   /// `later` [s] than the step's start.
   Capsule capsule(int c, double later) const {
-    const auto i = static_cast<std::size_t>(c);
     Capsule result = capsule(c);
-    result.start += later * velocity(start[i], result.start);
-    result.end += later * velocity(end[i], result.end);
+    result.start += later * velocity(start[c], result.start);
+    result.end += later * velocity(end[c], result.end);
     return result;
   }
-  PhalanxMotion motion(int c, const Capsule& now) const;
-};
-
-inline PhalanxMotion MovingHand::motion(int c, const Capsule& now) const {
-  const auto i = static_cast<std::size_t>(c);
-  PhalanxMotion motion;
-  motion.axis = now.end - now.start;
-  motion.velocity = start[i].displacement(rate);
-  motion.spread = end[i].displacement(rate) - motion.velocity;
-  if (carrier != nullptr) carrier->carry(now.start, motion);
-  motion.spin = palm_spin;
-  const double length_squared = motion.axis.squaredNorm();
-  if (length_squared > 0.0) {
-    const double inverse = 1.0 / length_squared;
-    motion.swing = inverse * motion.axis.cross(motion.spread);
-    motion.spin = motion.swing + (inverse * motion.axis.dot(palm_spin)) * motion.axis;
+  PhalanxMotion motion(int c, const Capsule& now) const {
+    PhalanxMotion motion;
+    motion.axis = now.end - now.start;
+    motion.velocity = start[c].displacement(rate);
+    motion.spread = end[c].displacement(rate) - motion.velocity;
+    if (carrier != nullptr) carrier->carry(now.start, motion);
+    motion.spin = palm_spin;
+    const double length_squared = motion.axis.squaredNorm();
+    if (length_squared > 0.0) {
+      const double inverse = 1.0 / length_squared;
+      motion.swing = inverse * motion.axis.cross(motion.spread);
+      motion.spin = motion.swing + (inverse * motion.axis.dot(palm_spin)) * motion.axis;
+    }
+    return motion;
   }
-  return motion;
-}
+};
 
 /// The hand of a track in a frame that lasts some time; made once a frame, then moved from step to step.
 class HandMotion {
@@ -163,5 +159,48 @@ class HandMotion {
   Matrix3 palm_from_;
   Vector3 palm_turn_, turn_start_bend_, turn_end_bend_;  // [rad]
 };
+
+/// Distance of two shapes at a time, and its rate.
+template <typename Features>
+struct Separation {
+  Features features;
+  double distance;  ///< [m]
+  double rate;      ///< [m/s], < 0 approaches
+};
+
+/// First touch of two things in relative motion.
+template <typename Features>
+struct FirstTouch {
+  double time;        ///< [s]
+  Features features;  ///< then; distance about 0
+};
+
+/// Finds when the distance first gets down to 0 within `duration` [s], if it does; `separation(time)` gives
+/// an optional Separation, nothing where the two are far apart. For convex shapes in relative translation the
+/// distance is convex in time, so that Newton's method from the start approaches the first touch from before
+/// it.
+///
+/// The distance's rate is n.(v_a - v_b) of the two nearest points: that these wander does not count, as each
+/// is nearest (the envelope theorem). Traps: bodies that turn make the distance concave at times, so that a
+/// step may end beyond the touch, which then counts with what it overlaps; and what parts now is given up,
+/// also where a turn would bring another corner in before the step ends. What only grazes may use up all 30
+/// steps, and is no touch then.
+template <typename Features, typename SeparationAt>
+std::optional<FirstTouch<Features>> first_touch(const SeparationAt& separation, double duration) {
+  constexpr double kMaxTouchGap = 1e-6;  // [m]
+  constexpr int kMaxSteps = 30;
+  double time = 0.0;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const std::optional<Separation<Features>> now = separation(time);
+    if (!now) return std::nullopt;
+    if (now->distance <= kMaxTouchGap) return FirstTouch<Features>{time, now->features};
+    if (now->rate >= 0.0) return std::nullopt;
+    // The tangent's zero: t + d / -d'. Where d is convex, the tangent is below it, so that this is never
+    // late.
+    time += now->distance / -now->rate;
+    if (time > duration) return std::nullopt;
+  }
+  return std::nullopt;
+}
 
 }  // namespace mrhi

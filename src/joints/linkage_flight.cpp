@@ -1,7 +1,9 @@
-#include "linkage_flight.h"
+#include "linkage.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "../math/rotation.h"
 
 namespace mrhi {
 namespace {
@@ -9,7 +11,7 @@ namespace {
 /// Largest rotation of a joint, or fall, in one part of a step [rad]. The error of a part goes with its fifth
 /// power (fourth order).
 constexpr double kMaxPartAngle = 0.03;
-constexpr double kMaxParts = 1000.0;
+constexpr double kMaxFlightParts = 1000.0;
 /// Budget of a step, about 1 ms: evaluations of the motion of a linkage of n bodies, times n^2; and the usual
 /// number of evaluations of a part.
 constexpr double kMaxWork = 60'000.0, kTypicalPartWork = 24.0;
@@ -25,13 +27,6 @@ constexpr double kConverged = 1e-16;
 
 const BodyState& of(const Linkage& linkage, int i, const std::vector<BodyState>& bodies) {
   return bodies[linkage.bodies[i].body];
-}
-
-/// Exponential map of a rotation vector.
-Quaternion turned(const Vector3& turn) {
-  const double angle = turn.norm();
-  if (angle == 0.0) return Quaternion::Identity();
-  return Quaternion(Eigen::AngleAxisd(angle, turn / angle));
 }
 
 /// Rate of a rotation vector from the angular velocity in the fixed frame (Iserles et al., Lie-group methods,
@@ -73,7 +68,7 @@ void LinkageFlight::read(const std::vector<JointState>& joints, const std::vecto
 /// can drift. The root's row of M is about its own centre: without momentum the angular momentum is the same
 /// about any point.
 void LinkageFlight::find_velocity(const Point& point) {
-  motion_.place({Vector3::Zero(), turned(point.turn) * root_}, point.positions);
+  motion_.place({Vector3::Zero(), rotation_by(point.turn) * root_}, point.positions);
   motion_.weigh();
   velocity_.tail(point.momenta.size()) = point.momenta;
   if (linkage_.floats()) velocity_.head<6>() << Vector3::Zero(), angular_momentum_;
@@ -139,7 +134,7 @@ void LinkageFlight::advance(const Vector3& gravity, double seconds, int rounds) 
     find_rate(two.point, gravity, two.rate);
   }
   go(now_, 0.5 * seconds, one.rate, 0.5 * seconds, two.rate, next_);
-  root_ = (turned(next_.turn) * root_).normalized();
+  root_ = (rotation_by(next_.turn) * root_).normalized();
   next_.turn.setZero();
   std::swap(now_, next_);
 }
@@ -233,7 +228,7 @@ void LinkageFlight::advance_by_parts(const Vector3& gravity, double step) {
   const double travel = step * std::max(fastest(), std::sqrt(gravity.norm() / kFallLength));
   const double bodies = motion_.size(), work = kMaxWork / (bodies * bodies);
   const int parts =
-      1 + static_cast<int>(std::min({travel / kMaxPartAngle, kMaxParts, work / kTypicalPartWork}));
+      1 + static_cast<int>(std::min({travel / kMaxPartAngle, kMaxFlightParts, work / kTypicalPartWork}));
   const int rounds = std::clamp(static_cast<int>(0.5 * work / parts), kMinIterations, kMaxIterations);
   for (int part = 0; part < parts; ++part) {
     if (part > 0) find_rate(now_, gravity, stages_[0].rate);

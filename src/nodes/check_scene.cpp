@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
-#include <stdexcept>
 
 #include "../scene/solid_mesh.h"
 #include "../text/command_line.h"
@@ -43,11 +42,10 @@ void print(const std::string& file, const Scene& scene) {
     Eigen::AlignedBox3d box;
     for (const PlacedShape& shape : body.shapes) box.extend(box_around(shape));
     const Vector3 size = body.shapes.empty() ? Vector3::Zero() : Vector3(1e3 * box.sizes());
-    char mass[16] = "", extent[40];
-    if (!body.fixed) std::snprintf(mass, sizeof mass, "%.4g", 1e3 * body.mass);
-    std::snprintf(extent, sizeof extent, "%.4g, %.4g, %.4g", size.x(), size.y(), size.z());
+    const std::string mass = body.fixed ? "" : text::format("%.4g", 1e3 * body.mass);
+    const std::string extent = text::format("%.4g, %.4g, %.4g", size.x(), size.y(), size.z());
     std::printf("  %-24s %-8s %10s %12.4g %26s %7zu %8.3g %11.3g\n", body.name.c_str(),
-                kind_of(scene, b).c_str(), mass, 1e6 * moments_of(body.shapes).volume, extent,
+                kind_of(scene, b).c_str(), mass.c_str(), 1e6 * moments_of(body.shapes).volume, extent.c_str(),
                 body.shapes.size(), body.material.static_friction, body.material.restitution);
   }
   for (const Joint& joint : scene.joints)
@@ -71,21 +69,17 @@ class Picture {
   std::string svg() const {
     constexpr double kSize = 800.0;
     const double scale = kSize / std::max(1e-9, seen_.sizes().maxCoeff());
-    std::string text = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-10 -10 820 820\">\n";
-    char part[96];
+    std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-10 -10 820 820\">\n";
     for (const Facet& facet : facets_) {
-      text += "<path d=\"";
+      svg += "<path d=\"";
       for (std::size_t k = 0; k < 3; ++k) {
         const Eigen::Vector2d at = scale * (facet.corners[k] - seen_.min());
-        std::snprintf(part, sizeof part, "%c%.1f %.1f", k == 0 ? 'M' : 'L', at.x(), kSize - at.y());
-        text += part;
+        svg += text::format("%c%.1f %.1f", k == 0 ? 'M' : 'L', at.x(), kSize - at.y());
       }
       const int shade = static_cast<int>(facet.shade);
-      std::snprintf(part, sizeof part, "Z\" fill=\"#%02x%02x%02x\"/>\n", shade, shade,
-                    std::min(255, shade + 20));
-      text += part;
+      svg += text::format("Z\" fill=\"#%02x%02x%02x\"/>\n", shade, shade, std::min(255, shade + 20));
     }
-    return text + "</svg>\n";
+    return svg + "</svg>\n";
   }
 
  private:

@@ -49,14 +49,9 @@ struct Parameters {
 
 }  // namespace
 
-/// Merges the hand_frame topics of several hand_tracking_nodes into one. Throws ParameterError for an invalid
-/// parameter.
+/// Merges the hand_frame topics of several hand_tracking_nodes into one.
 class HandMerging {
  public:
-  HandMerging(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
-      : HandMerging(node, private_node, Parameters(private_node)) {}
-
- private:
   HandMerging(ros::NodeHandle node, const ros::NodeHandle& private_node, const Parameters& parameters)
       : inputs_(parameters.inputs),
         merger_(inputs_.size(), parameters.mode),
@@ -71,6 +66,7 @@ class HandMerging {
     }
   }
 
+ private:
   void take(std::size_t stream, const mr_hand_interaction::HandFrame& message) {
     if (frame_id_.empty()) frame_id_ = message.header.frame_id;
     if (message.header.frame_id != frame_id_) {
@@ -101,5 +97,5 @@ class HandMerging {
 }  // namespace mrhi
 
 int main(int argc, char** argv) {
-  return mrhi::run_node<mrhi::HandMerging>(argc, argv, "merge_hands", mrhi::kUsage);
+  return mrhi::run_node<mrhi::HandMerging, mrhi::Parameters>(argc, argv, "merge_hands", mrhi::kUsage);
 }

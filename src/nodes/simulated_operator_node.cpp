@@ -11,6 +11,8 @@
 
 #include "../ros/leap_human_publisher.h"
 #include "../ros/node.h"
+#include "../ros/result_messages.h"
+#include "../text/text.h"
 #include "../training/operator_trial.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
@@ -76,11 +78,7 @@ Task checked_task(const std::string& name) {
 class OperatorPublisher {
  public:
   /// Throws an exception with the fault and what is allowed.
-  OperatorPublisher(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
-      : OperatorPublisher(node, Parameters(private_node)) {}
-
- private:
-  OperatorPublisher(ros::NodeHandle node, const Parameters& parameters)
+  OperatorPublisher(ros::NodeHandle node, const ros::NodeHandle&, const Parameters& parameters)
       : task_(checked_task(parameters.task)),
         skill_(parameters.group == "none" ? OperatorSkill{} : draw_skill(parameters.group, parameters.seed)),
         seed_(parameters.seed),
@@ -104,6 +102,7 @@ class OperatorPublisher {
                                     [this](const ros::SteadyTimerEvent&) { tick(); });
   }
 
+ private:
   void take(const mr_hand_interaction::ObjectStateArray& message) {
     for (const auto& object : message.objects) {
       if (object.name == status_.object) object_ = object;
@@ -143,9 +142,8 @@ class OperatorPublisher {
   void begin() {
     trial_ = status_.trial;
     time_ = 0.0;
-    const auto named = [this](const TaskObject& object) { return object.name == object_.name; };
-    const auto object = std::find_if(task_.objects.begin(), task_.objects.end(), named);
-    if (object == task_.objects.end())
+    const TaskObject* const object = text::find_named(task_.objects, object_.name);
+    if (object == nullptr)
       throw std::invalid_argument("task '" + task_.name + "' has no object '" + object_.name +
                                   "': training_node and the simulated operator must have the same task");
     person_ = make_person(skill_, task_, body_of(*object), seed_ + trial_, surroundings_);
@@ -155,21 +153,11 @@ class OperatorPublisher {
     const std::size_t goal = std::min<std::size_t>(std::max(status_.goal, 1u), task_.goals.size()) - 1;
     Sight sight =
         sight_of(task_, goal, from_message(object_.pose), from_message(object_.twist), object_.held);
-    sight.grip = grip();
+    sight.grip = grip_force(contacts_, {object_.name});
     sight.body = from_message(body_.pose);
     sight.body_twist = from_message(body_.twist);
     hands_ = hands_of(*person_, time_, sight, default_device_mount());
     for (HandJoints& hand : hands_) hand.id += kHands * trial_;
-  }
-
-  /// Grip force as observe() computes it.
-  double grip() const {
-    double pressing = 0.0;
-    for (const auto& contact : contacts_.contacts) {
-      if (contact.object == object_.name)
-        pressing += std::max(0.0, -from_message(contact.normal).dot(from_message(contact.force)));
-    }
-    return 0.5 * pressing;
   }
 
   Task task_;
@@ -197,5 +185,6 @@ class OperatorPublisher {
 }  // namespace mrhi
 
 int main(int argc, char** argv) {
-  return mrhi::run_node<mrhi::OperatorPublisher>(argc, argv, "simulated_operator_node", mrhi::kUsage);
+  return mrhi::run_node<mrhi::OperatorPublisher, mrhi::Parameters>(argc, argv, "simulated_operator_node",
+                                                                   mrhi::kUsage);
 }

@@ -39,7 +39,7 @@ struct Study {
   std::vector<double> gravities;
   std::vector<std::pair<std::string, std::string>> settings;
   std::uint64_t seed = 1;
-  bool free_hands = false, help = false;
+  bool free_hands = false;
 };
 
 void read_operators(const Given& given, Study& study) {
@@ -52,7 +52,8 @@ void read_operators(const Given& given, Study& study) {
   if (study.last < study.first) given.refuse("FIRST-LAST, FIRST at most LAST");
 }
 
-Study read_arguments(const std::vector<std::string>& arguments) {
+/// Empty for --help.
+std::optional<Study> read_arguments(const std::vector<std::string>& arguments) {
   Study study;
   CommandLine line;
   line.once("--output", "DIR", study.output).once("--task", "NAME|FILE", study.task);
@@ -66,8 +67,7 @@ Study read_arguments(const std::vector<std::string>& arguments) {
   line.once("--seed", "N",
             [&](const Given& given) { study.seed = static_cast<std::uint64_t>(given.whole(0, kMaxCount)); });
   line.flag("--free-hands", study.free_hands);
-  study.help = !line.read(arguments);
-  if (study.help) return study;
+  if (!line.read(arguments)) return std::nullopt;
   if (study.output.empty()) throw UsageError("--output is missing: --output DIR");
   if (study.models.empty())
     for (const ContactModelEntry* model : contact_models()) study.models.emplace_back(model->name);
@@ -87,9 +87,7 @@ Configuration configuration_of(const Study& study, const std::string& model) {
 
 /// Runs one simulated operator's session under one condition.
 void play_session(const Study& study, int person, const std::string& model, double gravity, Task task) {
-  char name[16], strength[16];
-  std::snprintf(name, sizeof name, "P%02d", person);
-  std::snprintf(strength, sizeof strength, "%gg", gravity);
+  const std::string name = text::format("P%02d", person), strength = text::format("%gg", gravity);
   task.gravity = Vector3(0.0, 0.0, -kStandardGravity * gravity);
 
   OperatorStage stage;
@@ -118,8 +116,8 @@ void play_session(const Study& study, int person, const std::string& model, doub
   while (session.phase() == SessionPhase::ready) {
     stamp = play_trial(session, skill, trials + session.position(), stage, stamp) + 1'000'000'000;
     const TrialRow& row = *session.last();
-    std::printf("%s %s %s %s: %s, %.1f s, attempts %d, drops %d\n", name, model.c_str(), strength,
-                row.object.c_str(), to_string(row.result), row.measures.completion_time,
+    std::printf("%s %s %s %s: %s, %.1f s, attempts %d, drops %d\n", name.c_str(), model.c_str(),
+                strength.c_str(), row.object.c_str(), to_string(row.result), row.measures.completion_time,
                 row.measures.attempts, row.measures.drops);
     std::fflush(stdout);
   }
@@ -143,12 +141,8 @@ void play(Study study) {
 
 int main(int argc, char** argv) {
   return mrhi::exit_status("simulated_study", [&] {
-    const Study study = read_arguments({argv + 1, argv + argc});
-    if (study.help) {
-      std::cout << kHelp;
-    } else {
-      play(study);
-    }
+    const std::optional<Study> study = read_arguments({argv + 1, argv + argc});
+    study ? play(*study) : void(std::cout << kHelp);
     return 0;
   });
 }

@@ -20,12 +20,16 @@
 
 #include "../ros/marker_layers.h"
 #include "../ros/node.h"
+#include "../ros/result_messages.h"
 #include "../ros/training_system.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/training/session.h"
 
 namespace mrhi {
 namespace {
+
+namespace msg = mr_hand_interaction;
 
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction training_node _participant:=NAME _folder:=FOLDER _group:=NAME _handedness:=SIDE
@@ -54,14 +58,6 @@ Nanoseconds now() {
   return from_ros_time(ros::Time::now());
 }
 
-std::optional<mr_hand_interaction::ObjectState> object_of(
-    const mr_hand_interaction::ObjectStateArray& message, const std::string& name) {
-  for (const auto& object : message.objects) {
-    if (object.name == name) return object;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 /// Runs a session with the objects of an interaction_node, and shows its progress. One thread.
@@ -69,28 +65,16 @@ class TrainingServer {
  public:
   /// Throws SceneError for a task that cannot be loaded, std::invalid_argument for one that a simulated
   /// operator cannot perform, SessionError for an unusable folder.
-  TrainingServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
-      : TrainingServer(node, private_node, TrainingParameters(private_node)) {}
-
-  ~TrainingServer() {
-    try {
-      session_.abort(now());
-    } catch (const std::exception& error) {
-      if (std::uncaught_exceptions() == 0) ROS_ERROR("%s", error.what());  // else that exception is reported
-    }
-  }
-
- private:
   TrainingServer(ros::NodeHandle node, ros::NodeHandle private_node, const TrainingParameters& parameters)
-      : event_(node.advertise<mr_hand_interaction::TrainingEvent>("training/events", kQueue)),
+      : event_(node.advertise<msg::TrainingEvent>("training/events", kQueue)),
         session_(parameters.open_session(node, now(), [this](const EventRow& row) { publish(row); })),
-        scene_(node, parameters.simulation, session_.task()),
+        scene_(parameters.simulation, session_.task()),
         parameters_(parameters.told_configuration(node, session_.task().gravity)),
         participant_(parameters.header.participant),
         auto_next_(parameters.auto_next) {
     for (const std::string& note : session_.folder().notes()) ROS_WARN("%s", note.c_str());
     if (parameters.auto_start) next_ = ros::SteadyTime::now();
-    status_ = node.advertise<mr_hand_interaction::TrainingStatus>("training/status", kQueue, true);
+    status_ = node.advertise<msg::TrainingStatus>("training/status", kQueue, true);
     markers_ = node.advertise<visualization_msgs::MarkerArray>("training/markers", 10);
     advertise_services(private_node);
     const auto hints = ros::TransportHints().tcpNoDelay();
@@ -105,9 +89,16 @@ class TrainingServer {
     timer_ = node.createSteadyTimer(kPeriod, [this](const ros::SteadyTimerEvent&) { tick(); });
   }
 
+  ~TrainingServer() {
+    try {
+      session_.abort(now());
+    } catch (const std::exception& error) {
+      if (std::uncaught_exceptions() == 0) ROS_ERROR("%s", error.what());  // else that exception is reported
+    }
+  }
+
+ private:
   void advertise_services(ros::NodeHandle& private_node) {
-    using Trigger = std_srvs::Trigger;
-    using SetBool = std_srvs::SetBool;
     // roscpp continues after an exception in a service; a session that cannot be written must end the node.
     const auto answer = [this](const auto& action, auto& response) {
       std::string wrong = failed_;
@@ -122,6 +113,8 @@ class TrainingServer {
       publish();
       return true;
     };
+    using std_srvs::SetBool;
+    using std_srvs::Trigger;
     const auto offer = [&](const char* name, std::string (TrainingServer::*action)()) {
       services_.push_back(private_node.advertiseService<Trigger::Request, Trigger::Response>(
           name, [this, answer, action](Trigger::Request&, Trigger::Response& response) {
@@ -137,60 +130,61 @@ class TrainingServer {
         }));
   }
 
-  void take(const mr_hand_interaction::ObjectStateArray& message) {
+  void take(const msg::ObjectStateArray& message) {
     std::set<std::string> names;
-    person_.reset();
+    since_.person.reset();
     for (const auto& object : message.objects) {
       if (!object.is_operator) names.insert(object.name);
-      if (object.is_operator && !person_)
-        person_ = OperatorMotion{from_message(object.pose), from_message(object.twist)};
+      if (object.is_operator && !since_.person)
+        since_.person = OperatorMotion{from_message(object.pose), from_message(object.twist)};
     }
-    scene_.note_objects(std::move(names), person_.has_value());
+    scene_.note_objects(std::move(names), since_.person.has_value());
     fixed_frame_ = message.header.frame_id;
-    seen_ = object_of(message, watched().name);
+    const auto* const object = text::find_named(message.objects, watched().name);
+    seen_ = object ? std::make_optional(*object) : std::nullopt;
     if (session_.phase() != SessionPhase::running) return;
     const std::optional<Observation> seen = observed(message);
     at_start_ |= seen && starts(*seen);
     if (!seen || !at_start_) return;
     session_.update(*seen);
-    tracking_losses_ = touches_ = 0;
-    put_back_ = false;
+    since_ = {};
     if (session_.phase() != SessionPhase::running) note_end();
     if (!session_.trial().events().empty()) publish();  // the state may last for less than a period
   }
 
+  const ObjectModel& model() const { return scene_.model(session_.object().name); }
+
   /// True if the object is at the trial's start; messages sent before it was placed show it elsewhere.
   bool starts(const Observation& seen) const {
-    const ObjectModel& model = scene_.model(session_.object().name);
-    const Body& body = model.scene.bodies[model.body];
+    const Scene& scene = model().scene;
+    const Body& body = scene.bodies[model().body];
     if ((seen.pose.position - body.start.position).norm() >=
         kStartRoom + kStartDelay * body.start_twist.linear.norm())
       return false;
-    if (seen.joints.size() != model.scene.joints.size()) return false;
+    if (seen.joints.size() != scene.joints.size()) return false;
     return std::all_of(seen.joints.begin(), seen.joints.end(), [&](const auto& joint) {
-      const double start = model.scene.joints[*find_joint(model.scene, joint.first)].start;
+      const double start = scene.joints[*find_joint(scene, joint.first)].start;
       return std::abs(joint.second - start) < kStartRoom;
     });
   }
 
   /// The body that the participant watches: in a device the one that the goal's joint moves.
   const Body& watched() const {
-    const ObjectModel& model = scene_.model(session_.object().name);
+    const Scene& scene = model().scene;
     const Goal& goal = session_.task().goals[session_.trial().goal()];
-    if (goal.kind != GoalKind::joint) return model.scene.bodies[model.body];
-    return model.scene.bodies[model.scene.joints[*find_joint(model.scene, goal.joint)].child];
+    if (goal.kind != GoalKind::joint) return scene.bodies[model().body];
+    return scene.bodies[scene.joints[*find_joint(scene, goal.joint)].child];
   }
 
-  void take_event(const mr_hand_interaction::InteractionEvent& event) {
+  void take_event(const msg::InteractionEvent& event) {
     if (!at_start_) return;
-    tracking_losses_ += event.kind == event.HAND_LOST;
-    touches_ += event.kind == event.CONTACT_BEGIN;
-    put_back_ |= event.kind == event.OUT_OF_BOUNDS &&
-                 find_body(scene_.model(session_.object().name).scene, event.object).has_value();
+    since_.tracking_losses += event.kind == event.HAND_LOST;
+    since_.touches += event.kind == event.CONTACT_BEGIN;
+    since_.put_back |= event.kind == event.OUT_OF_BOUNDS && find_body(model().scene, event.object);
   }
 
   /// Changes of the system during a session are allowed, but logged.
-  void take_input(const mr_hand_interaction::SimulationInput& message) {
+  void take_input(const msg::SimulationInput& message) {
     try {
       for (const ParameterWatch::Difference& parameter : parameters_.take(message)) {
         session_.note_parameter(parameter.name, parameter.value, parameter.as_begun, now());
@@ -205,16 +199,15 @@ class TrainingServer {
     }
   }
 
-  void take_contacts(const mr_hand_interaction::ContactArray& message) { contacts_ = message; }
+  void take_contacts(const msg::ContactArray& message) { contacts_ = message; }
   void take_joints(const sensor_msgs::JointState& message) { joints_ = message; }
-  void take_hands(const mr_hand_interaction::HandFrame& message) { log_hands(message, false); }
-  void take_filtered_hands(const mr_hand_interaction::HandFrame& message) { log_hands(message, true); }
+  void take_hands(const msg::HandFrame& message) { log_hands(message, false); }
+  void take_filtered_hands(const msg::HandFrame& message) { log_hands(message, true); }
 
-  void log_hands(const mr_hand_interaction::HandFrame& message, bool filtered) {
-    using mr_hand_interaction::Phalanx;
+  void log_hands(const msg::HandFrame& message, bool filtered) {
     for (const auto& hand : message.hands) {
-      for (const Phalanx& phalanx : hand.phalanges) {
-        if (phalanx.finger != Phalanx::INDEX || phalanx.bone != Phalanx::DISTAL) continue;
+      for (const auto& phalanx : hand.phalanges) {
+        if (phalanx.finger != phalanx.INDEX || phalanx.bone != phalanx.DISTAL) continue;
         HandRow row;
         row.filtered = filtered;
         row.hand = hand.id;
@@ -235,20 +228,16 @@ class TrainingServer {
   }
 
   /// Observes the object and its descendants by joints; empty while it is absent.
-  std::optional<Observation> observed(const mr_hand_interaction::ObjectStateArray& message) {
-    const ObjectModel& model = scene_.model(session_.object().name);
-    Observation seen;
+  std::optional<Observation> observed(const msg::ObjectStateArray& message) {
+    const Scene& scene = model().scene;
+    Observation seen = since_;
     seen.stamp = on_our_clock(message.header.stamp);
-    seen.pose = model.scene.bodies[model.body].start;  // of a fixture, which no message has
-    seen.tracking_losses = tracking_losses_;
-    seen.put_back = put_back_;
-    seen.touches = touches_;
-    seen.person = person_;
+    seen.pose = scene.bodies[model().body].start;  // of a fixture, which no message has
     std::set<std::string> parts;
     bool there = false;
-    for (const Body& body : model.scene.bodies) {
+    for (const Body& body : scene.bodies) {
       parts.insert(body.name);
-      const auto object = object_of(message, body.name);
+      const auto* const object = text::find_named(message.objects, body.name);
       if (!object) continue;
       there = true;
       seen.held |= object->held != 0;
@@ -258,8 +247,7 @@ class TrainingServer {
     }
     if (!there) return std::nullopt;
     for (std::size_t j = 0; j < std::min(joints_.name.size(), joints_.position.size()); ++j) {
-      if (find_joint(model.scene, joints_.name[j]))
-        seen.joints.emplace_back(joints_.name[j], joints_.position[j]);
+      if (find_joint(scene, joints_.name[j])) seen.joints.emplace_back(joints_.name[j], joints_.position[j]);
     }
     feel(message.header.stamp, parts, seen);
     return seen;
@@ -267,15 +255,10 @@ class TrainingServer {
 
   /// Adds the hands' contacts with the object.
   void feel(const ros::Time& stamp, const std::set<std::string>& parts, Observation& seen) const {
-    const Nanoseconds apart = from_ros_time(stamp) - from_ros_time(contacts_.header.stamp);
-    if (std::abs(to_seconds(apart)) > kFresh) return;
-    double pressing = 0.0;
-    for (const auto& contact : contacts_.contacts) {
-      if (parts.count(contact.object) == 0) continue;
-      seen.touched = true;
-      pressing += std::max(0.0, -from_message(contact.normal).dot(from_message(contact.force)));
-    }
-    seen.grip_force = 0.5 * pressing;
+    if (std::abs(seconds_between(contacts_.header.stamp, stamp)) > kFresh) return;
+    const auto touched = [&](const msg::Contact& contact) { return parts.count(contact.object) > 0; };
+    seen.touched = std::any_of(contacts_.contacts.begin(), contacts_.contacts.end(), touched);
+    seen.grip_force = grip_force(contacts_, parts);
   }
 
   void tick() {
@@ -294,8 +277,8 @@ class TrainingServer {
   std::string begin_trial() {
     const std::string wrong = scene_.prepare(session_.object());
     if (!wrong.empty()) return wrong;
-    tracking_losses_ = touches_ = 0;
-    put_back_ = at_start_ = false;
+    since_ = {};
+    at_start_ = false;
     session_.begin(now());
     return "";
   }
@@ -342,10 +325,10 @@ class TrainingServer {
                session_.folder().path().c_str());
   }
 
-  mr_hand_interaction::TrainingStatus status() const {
+  msg::TrainingStatus status() const {
     const Task& task = session_.task();
     const Trial& trial = session_.trial();
-    mr_hand_interaction::TrainingStatus status;
+    msg::TrainingStatus status;
     status.header.stamp = ros::Time::now();
     status.header.frame_id = fixed_frame_;
     status.phase = static_cast<std::uint8_t>(paused_ ? SessionPhase::paused : session_.phase());
@@ -353,38 +336,37 @@ class TrainingServer {
     status.participant = participant_;
     status.task = task.name;
     status.object = session_.object().name;
-    status.trials = static_cast<std::uint32_t>(session_.trials());
-    status.trial = std::min(static_cast<std::uint32_t>(session_.position() + 1), status.trials);
-    status.repetition =
-        static_cast<std::uint32_t>(session_.position() / task.objects.size()) + (task.practice ? 0U : 1U);
-    status.goal = static_cast<std::uint32_t>(trial.goal() + 1);
-    status.goals = static_cast<std::uint32_t>(task.goals.size());
-    status.place = static_cast<std::uint32_t>(task.place_number(trial.goal()));
-    status.places = static_cast<std::uint32_t>(task.places());
+    status.trials = session_.trials();
+    status.trial = std::min<std::size_t>(session_.position() + 1, status.trials);
+    status.repetition = session_.position() / task.objects.size() + (task.practice ? 0 : 1);
+    status.goal = trial.goal() + 1;
+    status.goals = task.goals.size();
+    status.place = task.place_number(trial.goal());
+    status.places = task.places();
     status.inside = trial.inside();
     status.progress = trial.progress();
     status.remaining = trial.remaining();
     status.elapsed = trial.elapsed();
-    status.attempts = static_cast<std::uint32_t>(trial.measures().attempts);
-    status.drops = static_cast<std::uint32_t>(trial.measures().drops);
+    status.attempts = trial.measures().attempts;
+    status.drops = trial.measures().drops;
     status.instruction = instruction_now(session_, paused_, !next_.isZero());
     if (session_.last()) status.result = to_string(session_.last()->result);
     return status;
   }
 
   void publish() {
-    const mr_hand_interaction::TrainingStatus message = status();
+    const msg::TrainingStatus message = status();
     status_.publish(message);
     if (markers_.getNumSubscribers() > 0)
       markers_.publish(training_markers(session_, watched(), message, seen_));
   }
 
   void publish(const EventRow& row) const {
-    mr_hand_interaction::TrainingEvent event;
+    msg::TrainingEvent event;
     event.header.stamp = to_ros_time(row.stamp);
     event.utc = row.utc;
     event.time = row.time;
-    event.trial = static_cast<std::uint32_t>(row.trial);
+    event.trial = row.trial;
     event.stage = to_string(row.stage);
     event.event = row.event;
     event.object = row.object;
@@ -404,12 +386,10 @@ class TrainingServer {
   bool at_start_ = false;  ///< the running trial's object has been seen at its start
 
   Nanoseconds clocks_apart_ = 0;  ///< this machine's clock minus that of the hands' stamps
-  mr_hand_interaction::ContactArray contacts_;
+  msg::ContactArray contacts_;
   sensor_msgs::JointState joints_;
-  std::optional<mr_hand_interaction::ObjectState> seen_;  ///< state of the watched body, if present
-  int tracking_losses_ = 0, touches_ = 0;
-  std::optional<OperatorMotion> person_;
-  bool put_back_ = false;
+  std::optional<msg::ObjectState> seen_;  ///< state of the watched body, if present
+  Observation since_;                     ///< events since the last observation, and the operator now
 
   ros::Publisher status_, markers_;
   std::vector<ros::Subscriber> subscribers_;
@@ -420,5 +400,6 @@ class TrainingServer {
 }  // namespace mrhi
 
 int main(int argc, char** argv) {
-  return mrhi::run_node<mrhi::TrainingServer>(argc, argv, "training_node", mrhi::kUsage);
+  return mrhi::run_node<mrhi::TrainingServer, mrhi::TrainingParameters>(argc, argv, "training_node",
+                                                                        mrhi::kUsage);
 }

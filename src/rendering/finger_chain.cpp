@@ -22,11 +22,6 @@ Vector3 direction(const Capsule& bone) {
   return (bone.end - bone.start).normalized();
 }
 
-/// Zero direction of the finger's root joint, and the axis about which it flexes.
-struct RootFrame {
-  Vector3 along, hinge;
-};
-
 /// Right hand: along to the fingers (x), hinge to the thumb (y), so that a turn by +angle about it, x to -z,
 /// closes the hand. A left hand is the mirror image in y: `along` is mirrored as a vector, `hinge` as an
 /// axis, with its sign turned besides. A metacarpal that stands almost out of the palm leaves no hinge; then
@@ -40,18 +35,10 @@ RootFrame root_frame(const Hand& hand, int finger) {
     return {palm * along.cwiseProduct(mirror), palm * hinge.cwiseProduct(mirror)};
   }
   const int metacarpal = capsule_index(finger, 0);
-  const Vector3 along =
-      hand.has(metacarpal) ? direction(hand.capsules[static_cast<std::size_t>(metacarpal)]) : palm.col(0);
+  const Vector3 along = hand.has(metacarpal) ? direction(hand.capsules[metacarpal]) : palm.col(0);
   const Vector3 across = palm.col(2).cross(along);
   if (across.squaredNorm() < 0.01) return {palm.col(0), palm.col(1)};
   return {along, across.normalized()};
-}
-
-ThumbRest make_thumb_rest() {
-  const Quaternion rest = Eigen::AngleAxisd(38.0 * kDegree, Vector3::UnitZ()) *
-                          Eigen::AngleAxisd(18.0 * kDegree, Vector3::UnitY()) *
-                          Eigen::AngleAxisd(-60.0 * kDegree, Vector3::UnitX());
-  return {rest * Vector3::UnitX(), rest * Vector3::UnitY()};
 }
 
 /// The hand with its palm lagging behind.
@@ -72,10 +59,7 @@ void turn_palm(const Hand& tracked, const PalmLag& lag, Hand& turned) {
 
 FingerChain::FingerChain(const Hand& tracked, int finger, const Vector3& shift, const Hand* lags_behind)
     : finger_(finger), tied_(has(tracked, 1)) {
-  for (int bone = 0; bone < kBonesPerFinger; ++bone) {
-    const auto c = static_cast<std::size_t>(capsule_index(finger_, bone));
-    joints_[static_cast<std::size_t>(bone)] = tracked.capsules[c].start + shift;
-  }
+  for (int index = 0; index < kBonesPerFinger; ++index) joints_[index] = bone(tracked, index).start + shift;
   find_axes(tracked);
   find_limits(tracked, lags_behind);
   placed_swing_ = swing_;
@@ -85,19 +69,18 @@ FingerChain::FingerChain(const Hand& tracked, int finger, const Vector3& shift, 
 /// At the finger as tracked: swing is across the proximal phalanx and the root's axis, hinge is the root's
 /// axis less its part along the phalanx, (along x root) x along.
 void FingerChain::find_axes(const Hand& tracked) {
-  const std::size_t proximal = static_cast<std::size_t>(capsule_index(finger_, 1));
   root_ = Vector3::UnitY(), swing_ = Vector3::UnitZ(), hinge_ = Vector3::UnitY();
   if (!tied_) return;
   const RootFrame frame = root_frame(tracked, finger_);
-  const Vector3 along = direction(tracked.capsules[proximal]);
+  const Vector3 along = direction(bone(tracked, 1));
   root_ = frame.hinge;
   onward_ = frame.along;
   swing_ = along.cross(root_).normalized();
   hinge_ = swing_.cross(along);
   if (finger_ != 0 || !has(tracked, 2) || !has(tracked, 3)) return;
   // An opposing thumb turns about its own length: the bend itself then shows the axis.
-  const Vector3 middle = direction(tracked.capsules[proximal + 1]);
-  Vector3 bent = along.cross(middle) + middle.cross(direction(tracked.capsules[proximal + 2]));
+  const Vector3 middle = direction(bone(tracked, 2));
+  Vector3 bent = along.cross(middle) + middle.cross(direction(bone(tracked, 3)));
   bent -= bent.dot(along) * along;
   const double length = bent.norm();
   if (length > 0.0) {
@@ -110,8 +93,8 @@ void FingerChain::find_axes(const Hand& tracked) {
 /// angle, so that 0 is allowed. The reach of a joint is the length of the bones beyond it, which bounds its
 /// distance from the tip.
 void FingerChain::find_limits(const Hand& tracked, const Hand* lags_behind) {
-  const auto bone = [&](int index) -> const Capsule& {
-    return tracked.capsules[static_cast<std::size_t>(capsule_index(finger_, index))];
+  const auto length = [&](int index) {
+    return (bone(tracked, index).end - bone(tracked, index).start).norm();
   };
   lower_.setZero(), upper_.setZero(), reach_.setZero(), angles_.setZero();
   if (!tied_) {
@@ -120,17 +103,17 @@ void FingerChain::find_limits(const Hand& tracked, const Hand* lags_behind) {
   }
   angles_ = angles(tracked, hinge_);
   std::array<bool, 4> free{{true, true, false, false}};
-  reach_[0] = (bone(1).end - bone(1).start).norm();
+  reach_[0] = length(1);
   for (int joint = 2; joint < kBonesPerFinger && has(tracked, joint) && has(tracked, joint - 1); ++joint) {
-    free[static_cast<std::size_t>(joint)] = true;
-    reach_.head(joint + 1) += (bone(joint).end - bone(joint).start).norm();
+    free[joint] = true;
+    reach_.head(joint + 1) += length(joint);
   }
   reach_[1] = reach_[0];
   const FingerOffset as_tracked =
       lags_behind == nullptr ? angles_ : FingerChain(*lags_behind, finger_, Vector3::Zero()).angles_;
   const JointLimits limits = joint_limits(finger_);
   for (int i = 0; i < 4; ++i) {
-    if (!free[static_cast<std::size_t>(i)]) continue;
+    if (!free[i]) continue;
     lower_[i] = std::min(as_tracked[i], limits.lower[i]) - angles_[i];
     upper_[i] = std::max(as_tracked[i], limits.upper[i]) - angles_[i];
   }
@@ -141,15 +124,12 @@ void FingerChain::find_limits(const Hand& tracked, const Hand* lags_behind) {
 /// after, a and b, with its sign: atan2((a x b).hinge, a.b). What bends sideways there is not seen, and stays
 /// as it is.
 FingerOffset FingerChain::angles(const Hand& hand, const Vector3& hinge) const {
-  const auto bone = [&](int index) {
-    return direction(hand.capsules[static_cast<std::size_t>(capsule_index(finger_, index))]);
-  };
-  const Vector3 along = bone(1);
+  const Vector3 along = direction(bone(hand, 1));
   const double onward = along.dot(onward_), upward = along.dot(onward_.cross(root_)),
                aside = along.dot(root_);
   FingerOffset angles(std::atan2(-upward, onward), std::atan2(aside, std::hypot(onward, upward)), 0.0, 0.0);
   for (int joint = 2; joint < kBonesPerFinger && has(hand, joint) && has(hand, joint - 1); ++joint) {
-    const Vector3 before = bone(joint - 1), after = bone(joint);
+    const Vector3 before = direction(bone(hand, joint - 1)), after = direction(bone(hand, joint));
     angles[joint] = std::atan2(before.cross(after).dot(hinge), before.dot(after));
   }
   return angles;
@@ -169,7 +149,7 @@ FingerOffset FingerChain::like(const Hand& shown, const FingerChain& chain) cons
 /// so that what turns a joint carries the axes of all beyond it; hinge is the same before and after its own
 /// turn. With no offset points are added, not turned: the tracked hand to the last bit.
 void FingerChain::place(const Hand& tracked, const FingerOffset& offset, const Vector3& shift, Hand& placed) {
-  const auto first = static_cast<std::size_t>(capsule_index(finger_, 0));
+  const int first = capsule_index(finger_, 0);
   placed_swing_ = swing_;
   placed_hinge_ = hinge_;
   const bool turned = tied_ && !(offset == 0.0).all();
@@ -183,21 +163,20 @@ void FingerChain::place(const Hand& tracked, const FingerOffset& offset, const V
   const Vector3 moved = tied_ ? shift : Vector3(shift + offset.head<3>().matrix());
   const Capsule* before = nullptr;
   Vector3 joint;
-  for (std::size_t bone = 1; bone < kBonesPerFinger; ++bone) {
-    const Capsule& from = tracked.capsules[first + bone];
-    Capsule& to = placed.capsules[first + bone];
+  for (int index = 1; index < kBonesPerFinger; ++index) {
+    const Capsule& from = tracked.capsules[first + index];
+    Capsule& to = placed.capsules[first + index];
     if (from.radius <= 0.0) continue;
     if (!turned) {
       to.start = from.start + moved;
       to.end = from.end + moved;
-      joints_[bone] = to.start;
+      joints_[index] = to.start;
       continue;
     }
     joint = before == nullptr ? Vector3(from.start + moved)
                               : Vector3(joint + turn * (from.start - before->start));
-    if (bone > 1 && offset[static_cast<Eigen::Index>(bone)] != 0.0)
-      turn = turn * turn_about(hinge_, offset[static_cast<Eigen::Index>(bone)]);
-    to.start = joints_[bone] = joint;
+    if (index > 1 && offset[index] != 0.0) turn = turn * turn_about(hinge_, offset[index]);
+    to.start = joints_[index] = joint;
     to.end = joint + turn * (from.end - from.start);
     before = &from;
   }
@@ -210,7 +189,7 @@ FingerOffset FingerChain::gradient(int bone, const Vector3& x, const Vector3& n)
   const Vector3 at_root = (x - joints_[1]).cross(n);
   FingerOffset gradient(root_.dot(at_root), placed_swing_.dot(at_root), 0.0, 0.0);
   for (int joint = 2; joint <= bone; ++joint)
-    gradient[joint] = placed_hinge_.dot((x - joints_[static_cast<std::size_t>(joint)]).cross(n));
+    gradient[joint] = placed_hinge_.dot((x - joints_[joint]).cross(n));
   return gradient;
 }
 
@@ -238,8 +217,11 @@ JointLimits joint_limits(int finger) {
   return {kDegree * FingerOffset(-40.0, -25.0, -5.0, -20.0), kDegree * FingerOffset(95.0, 25.0, 115.0, 85.0)};
 }
 
-const ThumbRest& thumb_rest() {
-  static const ThumbRest rest = make_thumb_rest();
+const RootFrame& thumb_rest() {
+  static const Quaternion turn = Eigen::AngleAxisd(38.0 * kDegree, Vector3::UnitZ()) *
+                                 Eigen::AngleAxisd(18.0 * kDegree, Vector3::UnitY()) *
+                                 Eigen::AngleAxisd(-60.0 * kDegree, Vector3::UnitX());
+  static const RootFrame rest{turn * Vector3::UnitX(), turn * Vector3::UnitY()};
   return rest;
 }
 
@@ -261,25 +243,23 @@ void HandChain::place(const HandOffset& offset, Hand& placed) {
   shift_ = offset.shift;
   placed.palm = {tracked_->palm.position + shift_, tracked_->palm.orientation};
   placed.wrist = tracked_->wrist + shift_;
-  for (std::size_t c = 0; c < kCapsules; ++c) {
+  for (int c = 0; c < kCapsules; ++c) {
     const Capsule& from = tracked_->capsules[c];
     if (from.radius <= 0.0) continue;
-    const int moves = finger_that_moves(static_cast<int>(c));
-    if (moves >= 0 && known_[static_cast<std::size_t>(moves)]) continue;
+    const int moves = finger_that_moves(c);
+    if (moves >= 0 && known_[moves]) continue;
     placed.capsules[c].start = from.start + shift_;
     placed.capsules[c].end = from.end + shift_;
   }
   for (int f = 0; f < kFingers; ++f) {
-    const FingerOffset& turned = offset.fingers[static_cast<std::size_t>(f)];
-    if (known_[static_cast<std::size_t>(f)] || !(turned == 0.0).all())
-      finger(f).place(*tracked_, turned, shift_, placed);
+    const FingerOffset& turned = offset.fingers[f];
+    if (known_[f] || !(turned == 0.0).all()) finger(f).place(*tracked_, turned, shift_, placed);
   }
 }
 
-FingerChain& HandChain::finger(int index) {
-  const auto f = static_cast<std::size_t>(index);
+FingerChain& HandChain::finger(int f) {
   if (!known_[f]) {
-    fingers_[f] = FingerChain(*tracked_, index, shift_, lags_behind_);
+    fingers_[f] = FingerChain(*tracked_, f, shift_, lags_behind_);
     known_[f] = true;
   }
   return fingers_[f];

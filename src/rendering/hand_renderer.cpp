@@ -1,11 +1,7 @@
-#include "hand_renderer.h"
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "../collision/neighbours.h"
-#include "mr_hand_interaction/tracking/hand_track.h"
 #include "renderer.h"
 
 namespace mrhi {
@@ -25,23 +21,6 @@ double margin(const HandOffset& offset) {
   return offset.zero() ? kLookAhead : offset.shift.norm() + kPushMargin;
 }
 
-/// Compares bits: a hand placed again from the same numbers is the same.
-bool same_place(const Hand& a, const Hand& b) {
-  const auto same = [](const Capsule& x, const Capsule& y) {
-    return x.radius == y.radius && x.start == y.start && x.end == y.end;
-  };
-  return a.palm.position == b.palm.position && a.wrist == b.wrist &&
-         a.palm.orientation.coeffs() == b.palm.orientation.coeffs() &&
-         std::equal(a.capsules.begin(), a.capsules.end(), b.capsules.begin(), same);
-}
-
-bool same_offset(const HandOffset& a, const HandOffset& b) {
-  const auto same = [](const FingerOffset& x, const FingerOffset& y) { return (x == y).all(); };
-  return a.shift == b.shift && a.lag.whole.coeffs() == b.lag.whole.coeffs() &&
-         a.lag.frame.coeffs() == b.lag.frame.coeffs() &&
-         std::equal(a.fingers.begin(), a.fingers.end(), b.fingers.begin(), same);
-}
-
 /// The search for axes of the palm ends when joint limits displace phalanges by less than this [m].
 constexpr double kMaxLimitDisplacement = 0.0005;
 /// First and last turn of that search [rad].
@@ -55,8 +34,8 @@ constexpr double kMinPalmArea = 1e-4;
 Quaternion axes_by_bones(const Hand& hand) {
   const int index = capsule_index(1, 1), little = capsule_index(4, 1);
   if (!hand.has(index) || !hand.has(little)) return hand.palm.orientation;
-  const Vector3 a = hand.capsules[static_cast<std::size_t>(index)].start - hand.wrist;
-  const Vector3 b = hand.capsules[static_cast<std::size_t>(little)].start - hand.wrist;
+  const Vector3 a = hand.capsules[index].start - hand.wrist;
+  const Vector3 b = hand.capsules[little].start - hand.wrist;
   const Vector3 out = a.cross(b);
   if (out.norm() < kMinPalmArea) return hand.palm.orientation;
   Matrix3 axes;
@@ -103,7 +82,7 @@ HandOffset returning(const HandOffset& offset, Nanoseconds stamp, HandChain& cha
   const double decay = decay_since(offset, stamp);
   left.shift *= remaining_fraction(offset.shift.norm(), decay);
   for (int f = 0; f < kFingers; ++f) {
-    FingerOffset& turned = left.fingers[static_cast<std::size_t>(f)];
+    FingerOffset& turned = left.fingers[f];
     if ((turned == 0.0).all() && left.lag.zero()) continue;
     const FingerChain& finger = chain.finger(f);
     turned = turned.max(finger.lower()).min(finger.upper());
@@ -131,134 +110,105 @@ void note_touches(const std::vector<Contact>& contacts, int slot, RenderedHand& 
   }
 }
 
-HandRenderer::HandRenderer(const Scene& scene, const ContactFinder& finder)
-    : impl_(std::make_unique<Impl>(scene, finder)) {}
-HandRenderer::~HandRenderer() = default;
-
-void HandRenderer::render(const HandTrack& track, int slot, Nanoseconds stamp,
-                          const std::vector<BodyState>& bodies, const std::vector<Contact>& contacts,
-                          Interaction* interactions, HandOffset& offset, RenderedHand& rendered) {
-  Impl& impl = *impl_;
-  note_touches(contacts, slot, rendered);
-  if (track.appeared) offset = HandOffset();
-  ClearanceFinder::Setting setting{track.current, slot, bodies, contacts, nullptr, 0.0, interactions};
-  impl.setting = &setting, impl.track = &track, impl.stamp = stamp;
-  impl.last = &offset, impl.placed = &rendered.hand;
-  impl.keep_outside(impl.begin());
+void HandRenderer::render(HandFrameView& view, HandOffset& offset, RenderedHand& rendered) {
+  note_touches(view.contacts, view.slot, rendered);
+  if (view.track.appeared) offset = HandOffset();
+  view_ = &view;
+  last_ = &offset, placed_ = &rendered.hand;
+  keep_outside(begin());
   for (const bool fixtures : {false, true}) {
-    const bool stays_behind = impl.left_behind();
-    if (impl.leap <= kMaxDepth && !stays_behind) break;
-    if (!impl.show_in(fixtures)) continue;
-    impl.keep_outside(impl.finder.begin(setting, margin(offset)));
+    const bool stays_behind = left_behind();
+    if (leap_ <= kMaxDepth && !stays_behind) break;
+    if (!show_in(fixtures)) continue;
+    keep_outside(finder_.begin(view, margin(offset)));
   }
-  const bool is_offset = !impl.offset.zero();
-  if (!is_offset) rendered.hand = track.current;
-  impl.offset.stamp = stamp;
-  offset = impl.offset;
-  if (is_offset) impl.kept[static_cast<std::size_t>(slot)] = {true, track.current, rendered.hand, offset};
+  if (offset_.zero()) rendered.hand = view.track.current;
+  offset_.stamp = view.stamp;
+  offset = offset_;
 }
 
 /// Places the hand outside all bodies except those that it is shown in. `near`: the finder has found bodies.
-void HandRenderer::Impl::keep_outside(bool near) {
-  *placed = track->current;
-  setting->shown_before = nullptr;
-  setting->moved = 0.0;
-  const bool is_offset = !last->zero();
-  offset = HandOffset();
-  clearances.clear();
+void HandRenderer::keep_outside(bool near) {
+  *placed_ = view_->track.current;
+  view_->shown_before = nullptr;
+  view_->moved = 0.0;
+  const bool is_offset = !last_->zero();
+  offset_ = HandOffset();
+  clearances_.clear();
   if (is_offset || near) {
-    chain.begin(track->current, lag_returning(*last, stamp));
-    offset = returning(*last, stamp, chain);
-    chain.place(offset, *placed);
+    chain_.begin(view_->track.current, lag_returning(*last_, view_->stamp));
+    offset_ = returning(*last_, view_->stamp, chain_);
+    chain_.place(offset_, *placed_);
   }
-  const HandOffset reference = offset;
-  const double min_gap = near ? finder.find(*placed, *setting, kLookAhead, clearances) : 0.0;
-  pushed = min_gap < -kClearDepth;
-  leap = 0.0;
-  if (pushed || is_offset) look_back();
-  if (pushed) push_out(min_gap);
-  if (setting->shown_before != nullptr) keep_pace(reference);
+  const HandOffset reference = offset_;
+  const double min_gap = near ? finder_.find(*placed_, clearances_) : 0.0;
+  pushed_ = min_gap < -kClearDepth;
+  leap_ = 0.0;
+  if (pushed_ || is_offset) look_back();
+  if (pushed_) push_out(min_gap);
+  if (view_->shown_before != nullptr) keep_pace(reference);
 }
 
 /// Called if the hand can only leave the bodies by a leap: it is then shown in them until it is clear, as in
 /// a body that is spawned there. Returns false if it was shown in all of them already.
-bool HandRenderer::Impl::show_in(bool fixtures) const {
+bool HandRenderer::show_in(bool fixtures) const {
   bool any = false;
-  for (const Clearance& clearance : clearances) {
-    const bool fixed = finder.fixed(clearance.key.body);
+  for (const Clearance& clearance : clearances_) {
+    const bool fixed = finder_.fixed(clearance.key.body);
     if (fixed && !fixtures) continue;
-    any = any || !setting->interactions[clearance.key.body].shown_in;
-    setting->interactions[clearance.key.body].shown_in = true;
+    any = any || !view_->interactions[clearance.key.body].shown_in;
+    view_->interactions[clearance.key.body].shown_in = true;
   }
   return any;
 }
 
 /// Finds the bodies near the hand, except those that it is shown in. The hand is no longer shown in bodies
 /// that it was clear of in the previous frame.
-bool HandRenderer::Impl::begin() {
-  const bool near = finder.begin(*setting, margin(*last));
-  if (!finder.shown_in_any()) return near;
-  const Hand& from = track->appeared ? track->current : track->previous;
+bool HandRenderer::begin() {
+  const bool near = finder_.begin(*view_, margin(*last_));
+  if (!finder_.shown_in_any()) return near;
+  const Hand& from = view_->track.appeared ? view_->track.current : view_->track.previous;
   Hand shown = from;
-  chain_before.begin(from, last->lag);
-  chain_before.place(*last, shown);
-  finder.end_shown_in(shown, setting->interactions);
-  return finder.begin(*setting, margin(*last));
+  chain_before_.begin(from, last_->lag);
+  chain_before_.place(*last_, shown);
+  finder_.end_shown_in(shown);
+  return finder_.begin(*view_, margin(*last_));
 }
 
-/// Restores the hand as it was shown in the previous frame.
+/// Places the hand as it was shown in the previous frame.
 ///
 /// `moved` bounds the relative displacement since then: that of the farthest joint, and |v| + |w| R of the
 /// fastest body times the time.
-void HandRenderer::Impl::look_back() {
-  if (last->zero()) finder.begin(*setting, kPushMargin);
-  setting->moved = kUnknownDisplacement;
-  if (track->appeared) return;
-  const Shown& known = kept[static_cast<std::size_t>(setting->slot)];
-  tracked_before = track->previous;
-  offset_before = *last;
-  chain_before_set = false;
-  if (known.known && same_offset(known.offset, offset_before) && same_place(known.tracked, tracked_before)) {
-    before = known.hand;
-  } else {
-    place_before();
-  }
-  setting->shown_before = &before;
-  tracked_displacement = farthest_joint(track->previous, track->current);
-  elapsed = to_seconds(stamp - offset_before.stamp);
-  setting->moved = tracked_displacement + finder.fastest_body(setting->bodies) * elapsed;
-}
-
-void HandRenderer::Impl::place_before() {
-  before = tracked_before;
-  chain_before.begin(tracked_before, offset_before.lag);
-  chain_before.place(offset_before, before);
-  chain_before_set = true;
-}
-
-/// The finger as it was placed in the previous frame.
-FingerChain& HandRenderer::Impl::finger_before(int index) {
-  if (!chain_before_set) place_before();
-  return chain_before.finger(index);
+void HandRenderer::look_back() {
+  if (last_->zero()) finder_.begin(*view_, kPushMargin);
+  view_->moved = kUnknownDisplacement;
+  if (view_->track.appeared) return;
+  before_ = view_->track.previous;
+  chain_before_.begin(view_->track.previous, last_->lag);
+  chain_before_.place(*last_, before_);
+  view_->shown_before = &before_;
+  tracked_displacement_ = farthest_joint(view_->track.previous, view_->track.current);
+  elapsed_ = to_seconds(view_->stamp - last_->stamp);
+  view_->moved = tracked_displacement_ + finder_.fastest_body() * elapsed_;
 }
 
 /// True once the tracked hand has been clear of all bodies for kMaxTimeBehind and the rendered hand has not
 /// come nearer to it.
-bool HandRenderer::Impl::left_behind() {
+bool HandRenderer::left_behind() {
   const auto holds = [&](const Contact& contact) {
-    return contact.key.hand == setting->slot && contact.touching();
+    return contact.key.hand == view_->slot && contact.touching();
   };
-  const bool held = std::any_of(setting->contacts.begin(), setting->contacts.end(), holds);
-  if (!pushed || held || !finder.clear(setting->tracked)) {
-    offset.left = 0.0;
+  const bool held = std::any_of(view_->contacts.begin(), view_->contacts.end(), holds);
+  if (!pushed_ || held || !finder_.clear(view_->track.current)) {
+    offset_.left = 0.0;
     return false;
   }
-  const double left = displacement(HandOffset(), offset);
-  if (offset.left == 0.0 || left < offset.left - kMinProgress) {
-    offset.left = left;
-    offset.left_since = stamp;
+  const double left = displacement(HandOffset(), offset_);
+  if (offset_.left == 0.0 || left < offset_.left - kMinProgress) {
+    offset_.left = left;
+    offset_.left_since = view_->stamp;
   }
-  return stamp - offset.left_since >= kMaxTimeBehind;
+  return view_->stamp - offset_.left_since >= kMaxTimeBehind;
 }
 
 double deepest_penetration(const Hand& hand, const ContactFinder& finder, const Scene& scene,
@@ -268,11 +218,9 @@ double deepest_penetration(const Hand& hand, const ContactFinder& finder, const 
   for (int capsule = 0; capsule < kCapsules; ++capsule) {
     if (!hand.has(capsule)) continue;
     for (const int body : near) {
-      const auto b = static_cast<std::size_t>(body);
-      if (interactions[b].shown_in) continue;
-      for (int shape = 0; shape < static_cast<int>(scene.bodies[b].shapes.size()); ++shape) {
-        const auto features = finder.closest(hand.capsules[static_cast<std::size_t>(capsule)], body, shape,
-                                             bodies[b].pose, 0.0);
+      if (interactions[body].shown_in) continue;
+      for (int shape = 0; shape < static_cast<int>(scene.bodies[body].shapes.size()); ++shape) {
+        const auto features = finder.closest(hand.capsules[capsule], body, shape, bodies[body].pose, 0.0);
         if (features) deepest = std::max(deepest, -features->distance);
       }
     }
@@ -282,28 +230,29 @@ double deepest_penetration(const Hand& hand, const ContactFinder& finder, const 
 
 /// Distance by which joint limits keep phalanges from where they were shown, with this lag, summed over the
 /// fingers [m].
-double HandRenderer::Impl::limit_displacement(const PalmLag& lag) {
-  chain.begin(setting->tracked, lag);
+double HandRenderer::limit_displacement(const PalmLag& lag) {
+  chain_.begin(view_->track.current, lag);
   double held = 0.0;
   for (int f = 0; f < kFingers; ++f) {
-    const FingerChain& finger = chain.finger(f);
-    const FingerOffset pointed = finger.pointing(before, finger_before(f));
+    const FingerChain& finger = chain_.finger(f);
+    const FingerOffset pointed = finger.pointing(before_, chain_before_.finger(f));
     held += finger.displacement(pointed - pointed.max(finger.lower()).min(finger.upper()));
   }
   return held;
 }
 
 /// The frame lag with which the palm's axes stay as they were shown: frame whole R_tracked = R_before.
-Quaternion HandRenderer::Impl::frame_staying(const Quaternion& whole) const {
-  return (before.palm.orientation * (whole * setting->tracked.palm.orientation).conjugate()).normalized();
+Quaternion HandRenderer::frame_staying(const Quaternion& whole) const {
+  return (before_.palm.orientation * (whole * view_->track.current.palm.orientation).conjugate())
+      .normalized();
 }
 
 /// The lag with which the palm's bones stay as they were shown. Its axes, about which joint limits count, are
 /// chosen so that the fingers can stay as well. Compass search: turns about each world axis either way while
 /// that improves, then half the turn. The objective has kinks, so no derivative is used.
-PalmLag HandRenderer::Impl::lag_staying() {
+PalmLag HandRenderer::lag_staying() {
   PalmLag lag;
-  lag.whole = (axes_by_bones(before) * axes_by_bones(setting->tracked).conjugate()).normalized();
+  lag.whole = (axes_by_bones(before_) * axes_by_bones(view_->track.current).conjugate()).normalized();
   double held = limit_displacement(lag);
   const auto try_frame = [&](const Quaternion& frame) {
     const PalmLag other{lag.whole, frame.normalized()};

@@ -36,6 +36,150 @@ ContactKey key_of(std::size_t capsule, int end) {
   return key;
 }
 
+constexpr int kMaxSweeps = 40;
+/// The solver has converged if no gap changes by more in a sweep [m].
+constexpr double kConvergedShift = 1e-5;
+/// Largest turn of a joint in one solution: rotations are linearised [rad].
+constexpr double kMaxTurn = 0.25;
+
+/// Bound of the joints' change since the previous frame: a fingertip moves by at most `swing` [m].
+struct OffsetBounds {
+  const HandOffset& before;
+  double swing;
+};
+
+/// The unknowns of one finger: `free` without limits, `held` within them.
+struct Part {
+  FingerOffset lower, upper, compliance, free, held;
+};
+
+/// Finds the offset nearest to `reference`, weighted by inverse compliances, that keeps all gaps non-negative
+/// and all joints in their limits:
+///   minimise 1/2 (q - q0)' W (q - q0)  subject to  gap + J (q - qk) >= 0,  lower <= q <= upper,
+/// linearised where the hand is placed now (qk, `from`). Dual coordinate ascent (Hildreth 1957), limits by
+/// clamping, warm start with the clearances' pressures. A joint turns by at most a quarter of a radian.
+///
+/// With multipliers l >= 0 of the gaps, W (q - q0) = J^T l up to the forces of limits. W is diagonal: for
+/// given l, the best q within the limits is q0 + W^-1 J^T l (`free`) with each component clamped (`held`).
+/// The remaining dual function of l is concave, so that coordinate ascent reaches its maximum.
+class OffsetProblem {
+ public:
+  OffsetProblem(const HandOffset& reference, const OffsetBounds& bounds, HandChain& chain, const Hand& placed,
+                std::vector<Clearance>& clearances, const HandOffset& from)
+      : bounds_(bounds), chain_(chain), clearances_(clearances) {
+    shift_ << reference.shift.array(), 0.0;
+    for (Clearance& clearance : clearances_) {
+      linearise(placed, clearance);
+      const int f = HandChain::finger_that_moves(clearance.key.capsule);
+      if (f >= 0 && !used_[f]) use(f, reference, from);
+      begin(clearance, f, from);
+    }
+  }
+
+  void solve() {
+    for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+      double largest = 0.0;
+      for (Clearance& clearance : clearances_) largest = std::max(largest, relax(clearance));
+      if (largest < kConvergedShift) return;
+    }
+  }
+
+  /// Returns the smallest linearised gap [m].
+  double least_gap() {
+    double min_gap = 0.0;
+    for (const Clearance& clearance : clearances_)
+      min_gap = std::min(min_gap, gap_of(clearance, part_of(clearance)));
+    return min_gap;
+  }
+
+  void result(const HandOffset& reference, HandOffset& offset) const {
+    offset.shift = shift_.head<3>();
+    for (int f = 0; f < kFingers; ++f) offset.fingers[f] = used_[f] ? parts_[f].held : reference.fingers[f];
+  }
+
+ private:
+  /// Intersects the bounds. Limits come last, so that lower <= upper and joint limits always hold.
+  void use(int f, const HandOffset& reference, const HandOffset& from) {
+    used_[f] = true;
+    const FingerChain& finger = chain_.finger(f);
+    Part& part = parts_[f];
+    const FingerOffset swing = finger.swing(bounds_.swing);
+    const FingerOffset &now = from.fingers[f], &before = bounds_.before.fingers[f];
+    part.upper = finger.upper().min(now + kMaxTurn).min(before + swing).max(finger.lower());
+    part.lower = finger.lower().max(now - kMaxTurn).max(before - swing).min(part.upper);
+    part.compliance = finger.compliance();
+    part.free = reference.fingers[f];
+    part.held = part.free.max(part.lower).min(part.upper);
+  }
+
+  ///     J = (n; a.((x - p) x n) for each joint with the axis a through p),   x the capsule's axis point
+  void linearise(const Hand& placed, Clearance& clearance) {
+    const int capsule = clearance.key.capsule, f = HandChain::finger_that_moves(capsule);
+    clearance.by_shift << clearance.normal.array(), 0.0;
+    if (f < 0) return;
+    const Vector3 point = placed.capsules[capsule].axis_point(clearance.s);
+    clearance.by_finger = chain_.finger(f).gradient(bone_of(capsule), point, clearance.normal);
+  }
+
+  /// rest = gap - J q_k, so that the gap is rest + J q. Warm start with the pressures of the last pass.
+  void begin(Clearance& clearance, int f, const HandOffset& from) {
+    clearance.rest = clearance.gap - (clearance.by_shift.head<3>() * from.shift.array()).sum();
+    shift_ += (kShiftCompliance * clearance.pressure) * clearance.by_shift;
+    if (f < 0) return;
+    clearance.rest -= (clearance.by_finger * from.fingers[f]).sum();
+    comply(parts_[f], clearance, clearance.pressure);
+  }
+
+  static void comply(Part& part, const Clearance& clearance, double pressure) {
+    part.free += (pressure * part.compliance) * clearance.by_finger;
+    part.held = part.free.max(part.lower).min(part.upper);
+  }
+
+  double gap_of(const Clearance& clearance, const Part* part) const {
+    const double gap = clearance.rest + (clearance.by_shift * shift_).sum();
+    return part == nullptr ? gap : gap + (clearance.by_finger * part->held).sum();
+  }
+  Part* part_of(const Clearance& clearance) {
+    const int finger = HandChain::finger_that_moves(clearance.key.capsule);
+    return finger < 0 ? nullptr : &parts_[finger];
+  }
+
+  /// Closes one gap, or reduces its pressure if it is open. Returns the change of the gap [m].
+  /// dgap / dl = J W^-1 J^T over the free joints. A step of -gap / (dgap / dl) brings the gap to 0, or the
+  /// pressure to 0 if it would become negative. If a joint meets its limit, the next sweep continues.
+  double relax(Clearance& clearance) {
+    Part* part = part_of(clearance);
+    const double gap = gap_of(clearance, part);
+    if (gap >= 0.0 && clearance.pressure == 0.0) return 0.0;
+    double compliance = kShiftCompliance * clearance.by_shift.square().sum();
+    if (part != nullptr) compliance += free_compliance(*part, clearance.by_finger, gap);
+    const double pressure = std::max(0.0, clearance.pressure - gap / compliance);
+    const double change = pressure - clearance.pressure;
+    clearance.pressure = pressure;
+    shift_ += (kShiftCompliance * change) * clearance.by_shift;
+    if (part != nullptr) comply(*part, clearance, change);
+    return std::abs(change) * compliance;
+  }
+
+  /// Compliance of the joints that can still turn in the direction that closes the gap.
+  static double free_compliance(const Part& part, const FingerOffset& by_finger, double gap) {
+    double sum = 0.0;
+    for (int i = 0; i < 4; ++i) {
+      const bool up = (by_finger[i] > 0.0) == (gap < 0.0);
+      const bool stopped = up ? part.free[i] >= part.upper[i] : part.free[i] <= part.lower[i];
+      sum += stopped ? 0.0 : part.compliance[i] * by_finger[i] * by_finger[i];
+    }
+    return sum;
+  }
+
+  const OffsetBounds& bounds_;
+  HandChain& chain_;
+  std::vector<Clearance>& clearances_;
+  Eigen::Array4d shift_;
+  std::array<Part, kFingers> parts_;
+  std::array<bool, kFingers> used_{};
+};
+
 }  // namespace
 
 /// Limits the displacement of a shown hand's joints in a frame.
@@ -93,10 +237,10 @@ class Pace {
 
 /// Deeper than kShallow, gaps depend on the side on which the hand was shown before, which the first search
 /// of the frame did not know: they are computed again.
-void HandRenderer::Impl::push_out(double min_gap) {
-  const HandOffset reference = offset;
+void HandRenderer::push_out(double min_gap) {
+  const HandOffset reference = offset_;
   if (min_gap < -ClearanceFinder::kShallow) begin_anew(reference);
-  keep_out(reference, kSwingFraction * setting->moved + kMinSwing);
+  keep_out(reference, kSwingFraction * view_->moved + kMinSwing);
 }
 
 /// A hand that is kept away from the axis about which the tracked hand turns would swing farther than it.
@@ -105,23 +249,23 @@ void HandRenderer::Impl::push_out(double min_gap) {
 /// Tries in order: the solved offset at the pace of pushing bodies; at the hand's own pace; then the offset
 /// that leaves the hand as it was shown, with more and more of the palm's lag. Keeps the best result that is
 /// no deeper than allowed.
-void HandRenderer::Impl::keep_pace(const HandOffset& reference) {
-  if (farthest_joint(before, *placed) <= tracked_displacement + kPaceMargin) return;
-  const Pace pace(before, tracked_displacement + kPaceMargin);
+void HandRenderer::keep_pace(const HandOffset& reference) {
+  if (farthest_joint(before_, *placed_) <= tracked_displacement_ + kPaceMargin) return;
+  const Pace pace(before_, tracked_displacement_ + kPaceMargin);
   const double push = push_distance();
-  const Pace pushed_pace(before, tracked_displacement + push + kPaceMargin);
-  double least_beyond = pace.beyond(*placed);
-  HandOffset best = offset;
+  const Pace pushed_pace(before_, tracked_displacement_ + push + kPaceMargin);
+  double least_beyond = pace.beyond(*placed_);
+  HandOffset best = offset_;
   const auto in_step = [&](const Pace& at, const HandOffset& nearest_to, double swing, double tolerated) {
-    at.keep(*placed, clearances);
+    at.keep(*placed_, clearances_);
     settle(nearest_to, swing, &at, tolerated);
-    Pace::forget(clearances);
-    const double beyond = pace.beyond(*placed);
-    if (beyond >= least_beyond || finder.find(*placed, *setting, kLookAhead, clearances) < -tolerated) return;
+    Pace::forget(clearances_);
+    const double beyond = pace.beyond(*placed_);
+    if (beyond >= least_beyond || finder_.find(*placed_, clearances_) < -tolerated) return;
     least_beyond = beyond;
-    best = offset;
+    best = offset_;
   };
-  const double swing = kSwingFraction * setting->moved + kMinSwing;
+  const double swing = kSwingFraction * view_->moved + kMinSwing;
   if (least_beyond > push) in_step(pushed_pace, reference, swing, kMaxDepth);
   if (least_beyond > kMaxDepth && push > 0.0) in_step(pace, reference, swing, kMaxDepth);
   PalmLag lag = reference.lag;
@@ -129,50 +273,49 @@ void HandRenderer::Impl::keep_pace(const HandOffset& reference) {
     if (least_beyond <= kMaxDepth + push) break;
     if (stays == Stays::palm) lag = lag_staying();
     if (stays == Stays::axes) lag.frame = frame_staying(lag.whole);
-    chain.begin(setting->tracked, lag);
+    chain_.begin(view_->track.current, lag);
     const HandOffset stay = staying(lag);
     begin_anew(stay);
     in_step(pushed_pace, stay, kUnbounded, stays == Stays::offset ? kMaxDepth : kMaxPaceDepth);
   }
-  leap = std::max(0.0, least_beyond - push);
-  offset = best;
-  chain.begin(setting->tracked, offset.lag);
-  chain.place(offset, *placed);
+  leap_ = std::max(0.0, least_beyond - push);
+  offset_ = best;
+  chain_.begin(view_->track.current, offset_.lag);
+  chain_.place(offset_, *placed_);
 }
 
 /// Largest displacement of a loaded body towards the hand since the previous frame [m]: n.v of the body's
 /// point at the capsule's surface, with n out of the body.
-double HandRenderer::Impl::push_distance() const {
+double HandRenderer::push_distance() const {
   double fastest = 0.0;
-  for (const Clearance& clearance : clearances) {
+  for (const Clearance& clearance : clearances_) {
     if (clearance.pressure <= 0.0) continue;
-    const Capsule& capsule = placed->capsules[clearance.key.capsule];
+    const Capsule& capsule = placed_->capsules[clearance.key.capsule];
     const Vector3 point = capsule.axis_point(clearance.s) - capsule.radius * clearance.normal;
-    fastest =
-        std::max(fastest, clearance.normal.dot(finder.velocity(clearance.key.body, point, setting->bodies)));
+    fastest = std::max(fastest, clearance.normal.dot(finder_.velocity(clearance.key.body, point)));
   }
-  return fastest * elapsed;
+  return fastest * elapsed_;
 }
 
 /// The offset that leaves the hand where it was shown: joints keep their directions within their present
 /// limits, and the shift cancels the palm's displacement.
-HandOffset HandRenderer::Impl::staying(const PalmLag& lag) {
+HandOffset HandRenderer::staying(const PalmLag& lag) {
   HandOffset stay;
   stay.lag = lag;
-  stay.shift = before.palm.position - setting->tracked.palm.position;
+  stay.shift = before_.palm.position - view_->track.current.palm.position;
   for (int f = 0; f < kFingers; ++f)
-    stay.fingers[static_cast<std::size_t>(f)] = chain.finger(f).like(before, finger_before(f));
+    stay.fingers[f] = chain_.finger(f).like(before_, chain_before_.finger(f));
   return stay;
 }
 
 /// Relaxes, in this order: the bound of a fingertip's turn; the reference offset, in favour of where the hand
 /// was shown; bending around obstacles, in favour of a shift of the whole hand.
-void HandRenderer::Impl::keep_out(const HandOffset& reference, double swing) {
+void HandRenderer::keep_out(const HandOffset& reference, double swing) {
   if (settle(reference, swing) > -kMaxDepth) return;
   begin_anew(reference);
   if (settle(reference, kUnbounded) > -kMaxDepth) return;
-  if (setting->shown_before != nullptr) {
-    const HandOffset stay = staying(offset.lag);
+  if (view_->shown_before != nullptr) {
+    const HandOffset stay = staying(offset_.lag);
     begin_anew(stay);
     if (settle(stay, kUnbounded) > -kMaxDepth) return;
   }
@@ -186,19 +329,21 @@ void HandRenderer::Impl::keep_out(const HandOffset& reference, double swing) {
 /// Rows J of the gaps are n for the shift and FingerChain::gradient for joints. A plane is the surface's
 /// tangent there. On curved surfaces, and once joints turn, it is right for small steps only, so that gaps
 /// are computed again at the solution.
-double HandRenderer::Impl::settle(const HandOffset& reference, double swing, const Pace* pace,
-                                  double tolerated) {
+double HandRenderer::settle(const HandOffset& reference, double swing, const Pace* pace, double tolerated) {
   const int max_vain_passes = tolerated > kMaxDepth ? kMaxPasses : kMaxVainPasses;
   double min_gap = 0.0, best = std::numeric_limits<double>::lowest();
   int vain_passes = 0;
   for (int pass = 0; pass < kMaxPasses && vain_passes < max_vain_passes; ++pass) {
-    linearise();
-    const HandOffset from = offset;
-    const double expected = solve_offset(reference, {*last, swing}, chain, clearances, offset);
-    chain.place(offset, *placed);
-    if (expected > -kClearDepth && displacement(from, offset) < kMinStep) return expected;
-    min_gap = finder.find(*placed, *setting, kLookAhead, clearances);
-    if (pace != nullptr) min_gap = std::min(min_gap, pace->keep(*placed, clearances));
+    const HandOffset from = offset_;
+    const OffsetBounds bounds{*last_, swing};
+    OffsetProblem problem(reference, bounds, chain_, *placed_, clearances_, from);
+    problem.solve();
+    problem.result(reference, offset_);
+    const double expected = problem.least_gap();
+    chain_.place(offset_, *placed_);
+    if (expected > -kClearDepth && displacement(from, offset_) < kMinStep) return expected;
+    min_gap = finder_.find(*placed_, clearances_);
+    if (pace != nullptr) min_gap = std::min(min_gap, pace->keep(*placed_, clearances_));
     if (min_gap > -kClearDepth) return min_gap;
     vain_passes = pace != nullptr && min_gap < kImprovement * best ? vain_passes + 1 : 0;
     best = std::max(best, min_gap);
@@ -206,31 +351,19 @@ double HandRenderer::Impl::settle(const HandOffset& reference, double swing, con
   return min_gap;
 }
 
-void HandRenderer::Impl::begin_anew(const HandOffset& reference) {
-  offset = reference;
-  chain.place(offset, *placed);
-  clearances.clear();
-  finder.find(*placed, *setting, kLookAhead, clearances);
+/// Places the hand with this offset, and finds its clearances. Returns the smallest gap [m].
+double HandRenderer::begin_anew(const HandOffset& reference) {
+  offset_ = reference;
+  chain_.place(offset_, *placed_);
+  clearances_.clear();
+  return finder_.find(*placed_, clearances_);
 }
 
-///     J = (n; a.((x - p) x n) for each joint with the axis a through p),   x the capsule's axis point
-void HandRenderer::Impl::linearise() {
-  for (Clearance& clearance : clearances) {
-    const int capsule = clearance.key.capsule;
-    const int finger_index = HandChain::finger_that_moves(capsule);
-    clearance.by_shift << clearance.normal.array(), 0.0;
-    if (finger_index < 0) continue;
-    const Vector3 point = placed->capsules[clearance.key.capsule].axis_point(clearance.s);
-    clearance.by_finger = chain.finger(finger_index).gradient(bone_of(capsule), point, clearance.normal);
-  }
-}
-
-double HandRenderer::Impl::displacement(const HandOffset& from, const HandOffset& to) {
+double HandRenderer::displacement(const HandOffset& from, const HandOffset& to) {
   double farthest = 0.0;
   for (int f = 0; f < kFingers; ++f) {
-    const auto i = static_cast<std::size_t>(f);
-    const FingerOffset change = to.fingers[i] - from.fingers[i];
-    if (!(change == 0.0).all()) farthest = std::max(farthest, chain.finger(f).displacement(change));
+    const FingerOffset change = to.fingers[f] - from.fingers[f];
+    if (!(change == 0.0).all()) farthest = std::max(farthest, chain_.finger(f).displacement(change));
   }
   return farthest + (to.shift - from.shift).norm();
 }
@@ -238,18 +371,18 @@ double HandRenderer::Impl::displacement(const HandOffset& from, const HandOffset
 /// Fallback for contradictory clearances: shifts the whole hand to the nearest side of the deepest body. For
 /// a side with the normal n and height h, the deepest capsule is at min n.a - r - h < 0, and the hand is
 /// outside after a shift by that along n.
-void HandRenderer::Impl::shift_out() {
+void HandRenderer::shift_out() {
   constexpr int kMaxBodies = 4;
   for (int attempt = 0; attempt < kMaxBodies; ++attempt) {
     const auto deepest =
-        std::min_element(clearances.begin(), clearances.end(),
+        std::min_element(clearances_.begin(), clearances_.end(),
                          [](const Clearance& a, const Clearance& b) { return a.gap < b.gap; });
     Vector3 shift = Vector3::Zero();
     double min_gap = std::numeric_limits<double>::max();
-    for (const Clearance& side : clearances) {
+    for (const Clearance& side : clearances_) {
       if (side.key.body != deepest->key.body || side.key.shape != deepest->key.shape) continue;
       double reach = std::numeric_limits<double>::max();
-      for (const Capsule& capsule : placed->capsules) {
+      for (const Capsule& capsule : placed_->capsules) {
         if (capsule.radius <= 0.0) continue;
         const double lowest = std::min(side.normal.dot(capsule.start), side.normal.dot(capsule.end));
         reach = std::min(reach, lowest - capsule.radius - side.height);
@@ -258,10 +391,9 @@ void HandRenderer::Impl::shift_out() {
       min_gap = -reach;
       shift = -reach * side.normal;
     }
-    offset.shift += shift;
-    chain.place(offset, *placed);
-    clearances.clear();
-    if (finder.find(*placed, *setting, kLookAhead, clearances) > -kMaxDepth) return;
+    HandOffset shifted = offset_;
+    shifted.shift += shift;
+    if (begin_anew(shifted) > -kMaxDepth) return;
   }
   lead_out();
 }
@@ -269,29 +401,27 @@ void HandRenderer::Impl::shift_out() {
 /// Shifts the hand along the palm's axis on which it is outside after the shortest distance. Sphere tracing
 /// (Hart 1996): with a gap of -d the hand is still inside after less than d, so that a step of d skips no
 /// solution; kMinTraceStep ensures progress near the surface.
-void HandRenderer::Impl::lead_out() {
+void HandRenderer::lead_out() {
   constexpr double kMaxTrace = 0.5, kMinTraceStep = 0.0005;  // [m]
-  finder.begin(*setting, offset.shift.norm() + kMaxTrace);
-  const Matrix3 palm = setting->tracked.palm.orientation.toRotationMatrix();
+  finder_.begin(*view_, offset_.shift.norm() + kMaxTrace);
+  const Matrix3 palm = view_->track.current.palm.orientation.toRotationMatrix();
   double nearest = kMaxTrace;
-  const Vector3 from = offset.shift;
-  Vector3 out = from;
+  const Vector3 from = offset_.shift;
+  HandOffset tried = offset_, out = offset_;
   for (int direction = 0; direction < 6; ++direction) {
     const Vector3 axis = (direction < 3 ? 1.0 : -1.0) * palm.col(direction % 3);
     for (double gone = 0.0; gone < nearest;) {
-      offset.shift = from + gone * axis;
-      chain.place(offset, *placed);
-      clearances.clear();
-      const double min_gap = finder.find(*placed, *setting, kLookAhead, clearances);
+      tried.shift = from + gone * axis;
+      const double min_gap = begin_anew(tried);
       if (min_gap > -kMaxDepth) {
         nearest = gone;
-        out = offset.shift;
+        out = tried;
       }
       gone += std::max(-min_gap, kMinTraceStep);
     }
   }
-  offset.shift = out;
-  chain.place(offset, *placed);
+  offset_ = out;
+  chain_.place(offset_, *placed_);
 }
 
 }  // namespace mrhi

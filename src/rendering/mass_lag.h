@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "mr_hand_interaction/rendering/rendered_hand.h"
 #include "mr_hand_interaction/simulation.h"
 

@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "../collision/contact_finder.h"
-#include "hand_renderer.h"
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/rendering/rendered_hand.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
@@ -20,12 +20,12 @@ struct JointLimits {
 /// interphalangeal.
 JointLimits joint_limits(int finger);
 
-/// Rest pose of the thumb's metacarpal in the palm of a right hand (x to the fingers, z out of the back):
-/// where it points, and the axis about which the thumb flexes. Unit, at right angles.
-struct ThumbRest {
+/// Zero direction of a finger's root joint, and the axis about which it flexes. Unit, at right angles.
+struct RootFrame {
   Vector3 along, hinge;
 };
-const ThumbRest& thumb_rest();
+/// Rest pose of the thumb's metacarpal in the palm of a right hand (x to the fingers, z out of the back).
+const RootFrame& thumb_rest();
 
 /// A tracked finger as a chain: a root joint that flexes and abducts, fixed to the palm, and two hinges.
 /// Joints are turned from where they were tracked, so that bones keep their lengths whatever the offset. All
@@ -66,6 +66,9 @@ class FingerChain {
   void find_limits(const Hand& tracked, const Hand* lags_behind);
   FingerOffset angles(const Hand& hand, const Vector3& hinge) const;
   bool has(const Hand& hand, int bone) const { return hand.has(capsule_index(finger_, bone)); }
+  const Capsule& bone(const Hand& hand, int index) const {
+    return hand.capsules[capsule_index(finger_, index)];
+  }
 
   int finger_ = 0;
   bool tied_ = false;                            // to the palm: it has a proximal phalanx
@@ -123,20 +126,17 @@ struct Clearance {
   double pressure = 0.0;  ///< Lagrange multiplier, >= 0
 };
 
-/// Bound of the joints' change since the previous frame: a fingertip moves by at most `swing` [m].
-struct OffsetBounds {
-  const HandOffset& before;
-  double swing;
+/// A tracked hand at a frame, and its surroundings.
+struct HandFrameView {
+  const HandTrack& track;
+  int slot;
+  Nanoseconds stamp;
+  const std::vector<BodyState>& bodies;
+  const std::vector<Contact>& contacts;  ///< the present ones, with the faces that phalanges entered by
+  Interaction* interactions;             ///< the hand's, one per body: `shown_in` is cleared by the renderer
+  const Hand* shown_before = nullptr;    ///< in the previous frame, if the hand was there
+  double moved = 0.0;                    ///< bound of the relative displacement since then [m]
 };
-
-/// The offset nearest to `reference`, weighted by inverse compliances, that keeps all gaps non-negative and
-/// all joints in their limits:
-///   minimise 1/2 (q - q0)' W (q - q0)  subject to  gap + J (q - qk) >= 0,  lower <= q <= upper,
-/// linearised where the hand is placed now (qk, in `offset`). Dual coordinate ascent (Hildreth 1957), limits
-/// by clamping, warm start with the clearances' pressures. A joint turns by at most a quarter of a radian.
-/// Returns the smallest linearised gap [m].
-double solve_offset(const HandOffset& reference, const OffsetBounds& bounds, HandChain& chain,
-                    std::vector<Clearance>& clearances, HandOffset& offset);
 
 /// Finds where a hand to be shown is near or inside bodies, and on which side of them it is.
 class ClearanceFinder {
@@ -147,39 +147,26 @@ class ClearanceFinder {
   /// Keeps references.
   ClearanceFinder(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
 
-  /// The hand and its surroundings. `contacts` have the faces that its phalanges entered by.
-  struct Setting {
-    const Hand& tracked;
-    int slot;
-    const std::vector<BodyState>& bodies;
-    const std::vector<Contact>& contacts;
-    const Hand* shown_before;   ///< in the previous frame, if the hand was there
-    double moved;               ///< bound of the relative displacement since then [m]
-    Interaction* interactions;  ///< of the hand, one per body: which of them it is shown in
-  };
   /// Collects the bodies within `margin` of the tracked hand [m], except those that it is shown in. False if
-  /// there are none.
-  bool begin(const Setting& setting, double margin);
+  /// there are none. Keeps a reference until the next call.
+  bool begin(const HandFrameView& view, double margin);
 
   /// True if a body that the hand is shown in is near it.
   bool shown_in_any() const { return !shown_in_.empty(); }
   /// Clears `shown_in` of the bodies that the hand, as shown before, is clear of.
-  void end_shown_in(const Hand& shown, Interaction* interactions) const;
+  void end_shown_in(const Hand& shown) const;
 
   /// Largest speed of any point of the bodies near the hand [m/s].
-  double fastest_body(const std::vector<BodyState>& bodies) const;
-
+  double fastest_body() const;
   /// Velocity of a point of a body [m/s].
-  Vector3 velocity(int body, const Vector3& point, const std::vector<BodyState>& bodies) const;
+  Vector3 velocity(int body, const Vector3& point) const;
 
-  /// Adds surfaces within `margin` of the placed hand to `clearances`, and updates the gaps of all. Returns
-  /// the smallest gap [m], at most `margin`.
-  double find(const Hand& placed, const Setting& setting, double margin,
-              std::vector<Clearance>& clearances) const;
+  /// Adds surfaces near the placed hand to `clearances`, before it meets them, and updates the gaps of all.
+  /// Returns the smallest gap [m], at most kLookAhead.
+  double find(const Hand& placed, std::vector<Clearance>& clearances) const;
 
   /// True if the body never moves.
-  bool fixed(int body) const { return scene_.bodies[static_cast<std::size_t>(body)].fixed; }
-
+  bool fixed(int body) const { return scene_.bodies[body].fixed; }
   /// True if no capsule of the hand is in any of the bodies.
   bool clear(const Hand& hand) const;
 
@@ -197,11 +184,12 @@ class ClearanceFinder {
   template <typename See>
   static void each_near(const std::vector<Near>& near, const Hand& hand, double margin, const See& see);
   Face face(const Hand& placed, int capsule, const Near& near, const ClosestFeatures& features,
-            const AxisSpan& span, const Setting& setting) const;
+            const AxisSpan& span) const;
+
   const Scene& scene_;
   const ContactFinder& finder_;
-  std::vector<Near> near_;
-  std::vector<Near> shown_in_;
+  const HandFrameView* view_ = nullptr;
+  std::vector<Near> near_, shown_in_;
 };
 
 class Pace;  ///< limits the joints' displacement in a frame
@@ -212,65 +200,64 @@ constexpr double kMaxPaceDepth =
     1.8e-4;  ///< the same if only that limits the pace; below the promised 0.2 mm [m]
 constexpr double kLookAhead = 0.0015;  ///< surfaces within this distance are avoided before they are met [m]
 
-/// A hand as it was shown. Placing it again gives the same bits: this is a cache.
-struct Shown {
-  bool known = false;
-  Hand tracked, hand;
-  HandOffset offset;
-};
-
-/// Data of one hand's frame, and caches between frames.
-struct HandRenderer::Impl {
-  Impl(const Scene& scene, const ContactFinder& contact_finder) : finder(scene, contact_finder) {
-    clearances.reserve(256);
+/// Shows a tracked hand outside all bodies as one connected hand: its bones as tracked, turned about its
+/// joints within their limits, and where that is not enough shifted as a whole. docs/pipeline.md.
+class HandRenderer {
+ public:
+  /// Keeps references.
+  HandRenderer(const Scene& scene, const ContactFinder& finder) : finder_(scene, finder) {
+    clearances_.reserve(256);
   }
 
+  /// Renders the hand. `offset` is the hand's of the previous frame, and is updated.
+  void render(HandFrameView& view, HandOffset& offset, RenderedHand& rendered);
+
+ private:
   bool begin();
   void keep_outside(bool near);
   bool show_in(bool fixtures) const;
   void look_back();
-  void place_before();
-  FingerChain& finger_before(int index);
   // `reference` is the offset to stay near to; `swing` bounds a fingertip's turn in the frame [m].
   void push_out(double min_gap);
   void keep_pace(const HandOffset& reference);
   void keep_out(const HandOffset& reference, double swing);
   double settle(const HandOffset& reference, double swing, const Pace* pace = nullptr,
                 double tolerated = kMaxDepth);
-  void begin_anew(const HandOffset& reference);
+  double begin_anew(const HandOffset& reference);
   double push_distance() const;
   HandOffset staying(const PalmLag& lag);
   Quaternion frame_staying(const Quaternion& whole) const;
   PalmLag lag_staying();
   double limit_displacement(const PalmLag& lag);
-  void linearise();
   void shift_out();
   void lead_out();
   double displacement(const HandOffset& from, const HandOffset& to);
   bool left_behind();
 
-  // Of the frame. `offset` is the unknown, `placed` the hand with it.
-  ClearanceFinder::Setting* setting = nullptr;
-  const HandTrack* track = nullptr;
-  Nanoseconds stamp = 0;
-  const HandOffset* last = nullptr;  // the offset of the frame before
-  HandOffset offset;
-  Hand* placed = nullptr;
+  ClearanceFinder finder_;
+  HandChain chain_, chain_before_;  // the latter as of the previous frame
+  std::vector<Clearance> clearances_;
 
-  ClearanceFinder finder;
-  HandChain chain;
-  HandChain chain_before;         // of the previous frame, set on first use
-  bool chain_before_set = false;  // for this hand and frame
-  std::vector<Clearance> clearances;
-  Hand before;               // as it was shown at the frame before
-  Hand tracked_before;       // and as it was tracked
-  HandOffset offset_before;  // and its offset
-  std::array<Shown, kMaxHands> kept;
-  bool pushed = false;  // bodies are in the way
-  double leap = 0.0;    // of a joint beyond the displacement of hand and bodies, if unavoidable [m]
-  double tracked_displacement = 0.0;  // of the farthest joint since then [m]
-  double elapsed = 0.0;               // since then [s]
+  // Of the frame. `offset_` is the unknown, `placed_` the hand with it.
+  HandFrameView* view_ = nullptr;
+  const HandOffset* last_ = nullptr;  // the offset of the frame before
+  HandOffset offset_;
+  Hand* placed_ = nullptr;
+  Hand before_;          // as it was shown at the frame before
+  bool pushed_ = false;  // bodies are in the way
+  double leap_ = 0.0;    // of a joint beyond the displacement of hand and bodies, if unavoidable [m]
+  double tracked_displacement_ = 0.0;  // of the farthest joint since then [m]
+  double elapsed_ = 0.0;               // since then [s]
 };
+
+/// Sets which capsules touch, and with what force, from the contacts of the hand in `slot`.
+void note_touches(const std::vector<Contact>& contacts, int slot, RenderedHand& rendered);
+
+/// Deepest penetration of any of the hand's capsules into any body, but for those that it is shown in
+/// (`interactions`, as in HandFrameView) [m], >= 0. Looks at the hand as it is: it shares nothing with what
+/// made it.
+double deepest_penetration(const Hand& hand, const ContactFinder& finder, const Scene& scene,
+                           const std::vector<BodyState>& bodies, const Interaction* interactions);
 
 /// HandOffset::lag at `stamp`, after it has decayed since the previous frame. No joint moves in a frame by
 /// more than a person would see as a jump.

@@ -14,16 +14,6 @@ namespace {
 /// Weight of the triangles' normals, about that of the bones'.
 constexpr double kFacetWeight = 60.0;
 
-/// Columns that map an influence's place on its bone to world.
-struct Carrier {
-  Vector3 start, along;
-  Matrix3 beyond, axes;
-};
-
-Carrier carrier(const SkinBone& bone) {
-  return {bone.start, bone.length * bone.axes.col(0), bone.radius * bone.axes, bone.axes};
-}
-
 /// Reads the three skins in their order in the file.
 std::array<Skin, 3> read_skins() {
   const char* at = shipped_skins().data();
@@ -49,10 +39,6 @@ const std::array<Skin, 3>& skins() {
   return all;
 }
 
-HandPosture rest_posture() {
-  return posture_of_degrees({{0.0, 6.0, 1.0, -5.0, -10.0}});
-}
-
 /// z is as near to `back` as x allows. y = back x x, z = x x y: what is left of `back` across x.
 Matrix3 axes_along(const Vector3& x, const Vector3& back) {
   Matrix3 axes;
@@ -66,21 +52,25 @@ SkinBone bone_along(const Capsule& capsule, const Matrix3& axes) {
   return {capsule.start, axes, (capsule.end - capsule.start).norm(), capsule.radius};
 }
 
+SkinBone wrist_bone(const Hand& hand) {
+  return {hand.wrist, hand.palm.orientation.toRotationMatrix(), hand.palm_width, hand.palm_width};
+}
+
 RestHand make_rest_hand() {
+  const HandPosture spread = posture_of_degrees({{0.0, 6.0, 1.0, -5.0, -10.0}});
   RestHand rest;
-  rest.hand = complete_hand(hand_joints(human_hand(), Side::right, Pose{}, rest_posture()), Pose{});
+  rest.hand = complete_hand(hand_joints(human_hand(), Side::right, Pose{}, spread), Pose{});
   for (int finger = 0; finger < kFingers; ++finger) {
-    const Vector3 back = human_hand().fingers[static_cast<std::size_t>(finger)].root.col(2);
+    const Vector3 back = human_hand().fingers[finger].root.col(2);
     for (int bone = first_bone(finger); bone < kBonesPerFinger; ++bone) {
-      const auto index = static_cast<std::size_t>(capsule_index(finger, bone));
+      const int index = capsule_index(finger, bone);
       const Capsule& capsule = rest.hand.capsules[index];
       rest.rig[index] =
           bone_along(capsule, axes_along(capsule.end - capsule.start, bone == 0 ? Vector3::UnitZ() : back));
-      if (bone > 0) rest.rig[static_cast<std::size_t>(bend_index(finger, bone))] = rest.rig[index];
+      if (bone > 0) rest.rig[bend_index(finger, bone)] = rest.rig[index];
     }
   }
-  rest.rig[kWristBone] = {rest.hand.wrist, rest.hand.palm.orientation.toRotationMatrix(),
-                          rest.hand.palm_width, rest.hand.palm_width};
+  rest.rig[kWristBone] = wrist_bone(rest.hand);
   return rest;
 }
 
@@ -90,54 +80,6 @@ Matrix3 mirrored(Matrix3 axes, Side side) {
   if (side == Side::left) axes.row(1) *= -1.0, axes.col(1) *= -1.0;
   return axes;
 }
-
-class Poser {
- public:
-  explicit Poser(const Hand& hand) : hand_(hand), rest_(rest_hand().rig) {
-    rig_[kWristBone] = {hand.wrist, hand.palm.orientation.toRotationMatrix(), hand.palm_width,
-                        hand.palm_width};
-  }
-
-  SkinRig pose() {
-    for (int finger = 0; finger < kFingers; ++finger) {
-      int parent = kWristBone;
-      for (int bone = first_bone(finger); bone < kBonesPerFinger; ++bone) {
-        const int index = capsule_index(finger, bone);
-        turn(index, parent, bone > 0 ? bend_index(finger, bone) : -1);
-        parent = index;
-      }
-    }
-    if (hand_.side == Side::left) {
-      for (SkinBone& bone : rig_) bone.axes.col(1) *= -1.0;
-    }
-    return rig_;
-  }
-
- private:
-  Matrix3 rest_axes(int index) const {
-    return mirrored(rest_[static_cast<std::size_t>(index)].axes, hand_.side);
-  }
-
-  /// Turns the bone with its parent as in the rest hand, then by the smallest rotation that brings x onto the
-  /// bone: trackers do not report a twist about it. The bend has half of that rotation. At 180 degrees the
-  /// smallest rotation would not be unique; no joint bends that far.
-  void turn(int index, int parent, int bend) {
-    const auto i = static_cast<std::size_t>(index);
-    const Capsule& capsule = hand_.capsules[i];
-    const Matrix3 unbent =
-        rig_[static_cast<std::size_t>(parent)].axes * rest_axes(parent).transpose() * rest_axes(index);
-    const Quaternion turned = rotation_between(unbent.col(0), capsule.end - capsule.start);
-    rig_[i] = bone_along(capsule, turned * unbent);
-    if (bend < 0) return;
-    SkinBone& half = rig_[static_cast<std::size_t>(bend)];
-    half = rig_[i];
-    half.axes = Quaternion::Identity().slerp(0.5, turned) * unbent;
-  }
-
-  const Hand& hand_;
-  const SkinRig& rest_;
-  SkinRig rig_;
-};
 
 /// Radii of the red spot of a contact and of its core, in radii of the phalanx.
 constexpr double kSpotRadius = 2.0, kSpotCoreRadius = 1.1;
@@ -162,7 +104,7 @@ struct Occluders {
   explicit Occluders(const Hand& hand) {
     for (int f = 0; f < kFingers; ++f) {
       for (int b = 1; b < kBonesPerFinger; ++b) {
-        const Capsule& capsule = hand.capsules[static_cast<std::size_t>(capsule_index(f, b))];
+        const Capsule& capsule = hand.capsules[capsule_index(f, b)];
         const Vector3 centre = capsule.centre();
         const double length = (capsule.end - capsule.start).norm(), r = capsule.radius;
         const int i = sphere_of(f, b);
@@ -198,7 +140,7 @@ bool same_part(int a, int b) {
 std::array<Floats, kCapsules> make_counts() {
   std::array<Floats, kCapsules> counts;
   for (int own = 0; own < kCapsules; ++own) {
-    Floats& row = counts[static_cast<std::size_t>(own)];
+    Floats& row = counts[own];
     row.setZero();
     for (int f = 0; f < kFingers; ++f) {
       for (int b = 1; b < kBonesPerFinger; ++b) {
@@ -234,9 +176,7 @@ void add_facets(const std::vector<std::array<int, 3>>& triangles, const Hand& ha
                 const std::vector<Vector3>& vertices, std::vector<Vector3>& normals) {
   const double per_area =
       (hand.side == Side::left ? -kFacetWeight : kFacetWeight) / (hand.palm_width * hand.palm_width);
-  for (const auto& triangle : triangles) {
-    const auto a = static_cast<std::size_t>(triangle[0]), b = static_cast<std::size_t>(triangle[1]),
-               c = static_cast<std::size_t>(triangle[2]);
+  for (const auto& [a, b, c] : triangles) {
     const Vector3& corner = vertices[a];
     const Vector3 area = per_area * (vertices[b] - corner).cross(vertices[c] - corner);
     normals[a] += area;
@@ -263,8 +203,14 @@ const Skin& Skin::outline() {
 bool Skin::pose(const Hand& hand, SkinSurface& surface) const {
   if (!has_whole_skin(hand)) return false;
   const SkinRig rig = pose_rig(hand);
+  struct Carrier {  // maps an influence's place on its bone to world
+    Vector3 start, along;
+    Matrix3 beyond, axes;
+  };
   std::array<Carrier, kSkinBones> carriers;
-  std::transform(rig.begin(), rig.end(), carriers.begin(), carrier);
+  std::transform(rig.begin(), rig.end(), carriers.begin(), [](const SkinBone& bone) {
+    return Carrier{bone.start, bone.length * bone.axes.col(0), bone.radius * bone.axes, bone.axes};
+  });
   surface.vertices.resize(size());
   surface.normals.resize(size());
   std::size_t i = 0;
@@ -272,7 +218,7 @@ bool Skin::pose(const Hand& hand, SkinSurface& surface) const {
     Vector3 place = Vector3::Zero(), normal = Vector3::Zero();
     for (; i < model_.ends[v]; ++i) {
       const SkinModel::Influence& influence = model_.influences[i];
-      const Carrier& c = carriers[static_cast<std::size_t>(influence.bone)];
+      const Carrier& c = carriers[influence.bone];
       place += influence.weight *
                (c.start + influence.along * c.along + c.beyond * influence.beyond.cast<double>());
       normal += c.axes * influence.normal.cast<double>();
@@ -297,44 +243,61 @@ bool has_whole_skin(const Hand& hand) {
   return hand.palm_width > 0.0;
 }
 
+/// Trackers do not report a twist of a bone about itself: each turns with its parent as in the rest hand,
+/// then by the smallest rotation that brings x onto the bone. The bend between both has half of that
+/// rotation. At 180 degrees the smallest rotation would not be unique; no joint bends that far.
 SkinRig pose_rig(const Hand& hand) {
-  return Poser(hand).pose();
-}
-
-/// Fraction of the touching colour at a vertex, from the contacts of its own finger or of the palm.
-float SkinPaint::redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,
-                         const std::vector<int>& touched) const {
-  const int own = skin_.model().looks[vertex].capsule;
-  double red = 0.0;
-  for (const int c : touched) {
-    if (!same_part(c, own)) continue;
-    const auto i = static_cast<std::size_t>(c);
-    const double radius = rendered.hand.capsules[i].radius;
-    const double away = (place - rendered.pressed[i].point).norm();
-    const double firm =
-        kMinRedness + (1.0 - kMinRedness) * std::min(1.0, rendered.pressed[i].force / kFullRednessForce);
-    red = std::max(red, firm * smooth_step(kSpotRadius * radius, kSpotCoreRadius * radius, away));
+  const auto rest_axes = [&](int bone) { return mirrored(rest_hand().rig[bone].axes, hand.side); };
+  SkinRig rig;
+  rig[kWristBone] = wrist_bone(hand);
+  for (int finger = 0; finger < kFingers; ++finger) {
+    int parent = kWristBone;
+    for (int bone = first_bone(finger); bone < kBonesPerFinger; ++bone) {
+      const int index = capsule_index(finger, bone);
+      const Capsule& capsule = hand.capsules[index];
+      const Matrix3 unbent = rig[parent].axes * rest_axes(parent).transpose() * rest_axes(index);
+      const Quaternion turned = rotation_between(unbent.col(0), capsule.end - capsule.start);
+      rig[index] = bone_along(capsule, turned * unbent);
+      parent = index;
+      if (bone == 0) continue;
+      SkinBone& half = rig[bend_index(finger, bone)];
+      half = rig[index];
+      half.axes = Quaternion::Identity().slerp(0.5, turned) * unbent;
+    }
   }
-  return static_cast<float>(red);
+  if (hand.side == Side::left)
+    for (SkinBone& bone : rig) bone.axes.col(1) *= -1.0;
+  return rig;
 }
 
-void SkinPaint::paint(const RenderedHand& rendered, const SkinSurface& surface, std::vector<Rgb>& colours,
-                      const SkinTone& tone) const {
+void paint_skin(const Skin& skin, const RenderedHand& rendered, const SkinSurface& surface,
+                std::vector<Rgb>& colours, const SkinTone& tone) {
   static const std::array<Floats, kCapsules> counts = make_counts();
   const Occluders occluders(rendered.hand);
   std::vector<int> touched;
-  for (int c = 0; c < kCapsules; ++c) {
-    if (rendered.touching[static_cast<std::size_t>(c)]) touched.push_back(c);
-  }
+  for (int c = 0; c < kCapsules; ++c)
+    if (rendered.touching[c]) touched.push_back(c);
+  // Fraction of the touching colour, from the contacts of the vertex's own finger or of the palm.
+  const auto redness = [&](const Vector3& place, int own) {
+    double red = 0.0;
+    for (const int c : touched) {
+      if (!same_part(c, own)) continue;
+      const double radius = rendered.hand.capsules[c].radius;
+      const double away = (place - rendered.pressed[c].point).norm();
+      const double firm =
+          kMinRedness + (1.0 - kMinRedness) * std::min(1.0, rendered.pressed[c].force / kFullRednessForce);
+      red = std::max(red, firm * smooth_step(kSpotRadius * radius, kSpotCoreRadius * radius, away));
+    }
+    return static_cast<float>(red);
+  };
   colours.resize(surface.vertices.size());
   for (std::size_t v = 0; v < colours.size(); ++v) {
-    const SkinModel::Look& look = skin_.model().looks[v];
-    const float red = redness(v, surface.vertices[v], rendered, touched);
-    const Rgb skin = tone.skin * look.colour;
-    const Rgb colour = skin + red * (tone.touching - skin);
+    const SkinModel::Look& look = skin.model().looks[v];
+    const float red = redness(surface.vertices[v], look.capsule);
+    const Rgb paint = tone.skin * look.colour;
+    const Rgb colour = paint + red * (tone.touching - paint);
     const Eigen::Vector3f normal = surface.normals[v].cast<float>();
-    const float around = occluders.left(surface.vertices[v].cast<float>(), normal,
-                                        counts[static_cast<std::size_t>(look.capsule)]);
+    const float around = occluders.left(surface.vertices[v].cast<float>(), normal, counts[look.capsule]);
     colours[v] = (colour * light_on(normal, around)).min(1.0f);
   }
 }

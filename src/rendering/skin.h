@@ -156,22 +156,11 @@ struct SkinTone {
   Rgb touching = Rgb(0.86f, 0.30f, 0.08f);  ///< where it presses
 };
 
-/// The colours of a hand's skin, light included: rviz draws coloured vertices unlit. Less light comes from
-/// around where fingers cover each other or the palm (spheres as occluders). Immutable.
-class SkinPaint {
- public:
-  explicit SkinPaint(const Skin& skin) : skin_(skin) {}  ///< keeps a reference
-
-  /// A colour for each vertex of the surface, which is that of the rendered hand: redder around where it
-  /// presses, and the more so the harder.
-  void paint(const RenderedHand& rendered, const SkinSurface& surface, std::vector<Rgb>& colours,
-             const SkinTone& tone = {}) const;
-
- private:
-  float redness(std::size_t vertex, const Vector3& place, const RenderedHand& rendered,
-                const std::vector<int>& touched) const;
-  const Skin& skin_;
-};
+/// Colours of the vertices of a rendered hand's surface, light included: rviz draws coloured vertices unlit.
+/// Redder around where the hand presses, and the more so the harder. Less light comes from around where
+/// fingers cover each other or the palm (spheres as occluders).
+void paint_skin(const Skin& skin, const RenderedHand& rendered, const SkinSurface& surface,
+                std::vector<Rgb>& colours, const SkinTone& tone = {});
 
 /// Flattens the pads of a hand's skin against what they press: skin that is nearer to the touched plane than
 /// the pad's compression lies on it, and skin up to three times as far comes nearer. The compression grows

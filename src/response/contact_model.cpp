@@ -4,7 +4,6 @@
 #include "contact_model_list.h"
 #include "contact_step.h"
 #include "implicit_model.h"
-#include "joint_response.h"
 
 namespace mrhi {
 
@@ -23,7 +22,7 @@ class HandsThenRest : public ContactModel {
 
   void respond(ContactStep& step) override {
     const auto part = [&](std::vector<Contact>& contacts, std::vector<BodyContact>& body_contacts) {
-      return ContactStep{step.scene,    step.gravity, step.step,    contacts,
+      return ContactStep{step.scene,    step.gravity, step.step,    step.configuration, contacts,
                          body_contacts, step.bodies,  step.changes, no_grips_};
     };
     ContactStep of_hands = part(step.contacts, of_objects_ ? step.body_contacts : no_body_contacts_);
@@ -63,7 +62,7 @@ std::unique_ptr<ContactModel> make_contact_model(const Configuration& configurat
     rest = std::make_unique<JointedModel>(configuration, scene, state, events);
     if (configuration.contact_model == ContactModelKind::implicit) return rest;
   } else {
-    rest = std::make_unique<ImplicitModel>(configuration.contact);
+    rest = std::make_unique<ImplicitModel>();
   }
   return std::make_unique<HandsThenRest>(model.make(configuration.contact), model.of_objects,
                                          std::move(rest));

@@ -210,7 +210,7 @@ ContactPatch make_patch(double step, const std::vector<SpringContact>& rows, std
   patch.drive << patch.axes * vector(row.drive), 0.0, 0.0, row.drive_spin;
   Mobility6 mobility = Mobility6::Zero();
   const auto add = [&](int number, const Vector3& arm) {
-    const PatchBody& body = bodies[static_cast<std::size_t>(number)];
+    const PatchBody& body = bodies[number];
     const Matrix3 inverse_inertia = patch.axes * body.inverse_inertia * patch.axes.transpose();
     add_mobility(body.inverse_mass, inverse_inertia, patch.axes * arm, mobility);
   };

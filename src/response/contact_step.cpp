@@ -4,21 +4,19 @@ namespace mrhi {
 
 void StepChanges::reset(std::size_t bodies) {
   solved_.assign(bodies, false);
-  for (const Struck& struck : struck_) places_[static_cast<std::size_t>(struck.body)] = -1;
+  for (const Struck& struck : struck_) places_[struck.body] = -1;
   places_.resize(bodies, -1);
   struck_.reserve(bodies);
   struck_.clear();
 }
 
 StepChanges::Struck& StepChanges::struck(int body, const BodyState& after) {
-  int& place = places_[static_cast<std::size_t>(body)];
+  int& place = places_[body];
   if (place < 0) {
     place = static_cast<int>(struck_.size());
-    const Vector3 none = Vector3::Zero();
-    struck_.push_back(
-        {body, after.linear_momentum, after.angular_momentum, none, none, none, none, 0.0, 0.0});
+    struck_.push_back({body, {after.linear_momentum, after.angular_momentum}, {}, {}, 0.0, 0.0});
   }
-  return struck_[static_cast<std::size_t>(place)];
+  return struck_[place];
 }
 
 // For each body: J, r x J, and both times their time t. The momenta already include the impulses, so those
@@ -26,16 +24,16 @@ StepChanges::Struck& StepChanges::struck(int body, const BodyState& after) {
 void StepChanges::note_impacts(const std::vector<BodyImpact>& impacts, const std::vector<BodyState>& bodies) {
   const std::size_t known = struck_.size();
   for (const BodyImpact& impact : impacts) {
-    Struck& body = struck(impact.body, bodies[static_cast<std::size_t>(impact.body)]);
+    Struck& body = struck(impact.body, bodies[impact.body]);
     const Vector3 turn = impact.arm.cross(impact.impulse);
-    if (static_cast<std::size_t>(places_[static_cast<std::size_t>(impact.body)]) >= known) {
-      body.linear_before -= impact.impulse;
-      body.angular_before -= turn;
+    if (static_cast<std::size_t>(places_[impact.body]) >= known) {
+      body.before.linear -= impact.impulse;
+      body.before.angular -= turn;
     }
-    body.linear += impact.impulse;
-    body.angular += turn;
-    body.linear_moment += impact.time * impact.impulse;
-    body.angular_moment += impact.time * turn;
+    body.sum.linear += impact.impulse;
+    body.sum.angular += turn;
+    body.moment.linear += impact.time * impact.impulse;
+    body.moment.angular += impact.time * turn;
     body.size += impact.impulse.norm();
     body.size_moment += impact.time * impact.impulse.norm();
   }
@@ -43,14 +41,14 @@ void StepChanges::note_impacts(const std::vector<BodyImpact>& impacts, const std
 
 // delay_impacts() skips a body without a moment.
 void StepChanges::forget(int body) {
-  const int place = places_[static_cast<std::size_t>(body)];
-  if (place >= 0) struck_[static_cast<std::size_t>(place)].size_moment = 0.0;
+  const int place = places_[body];
+  if (place >= 0) struck_[place].size_moment = 0.0;
 }
 
 double StepChanges::mean_impact_time(std::size_t body) const {
   const int place = body < places_.size() ? places_[body] : -1;
   if (place < 0) return 0.0;
-  const Struck& struck = struck_[static_cast<std::size_t>(place)];
+  const Struck& struck = struck_[place];
   return struck.size_moment > 0.0 ? struck.size_moment / struck.size : 0.0;
 }
 
@@ -72,11 +70,12 @@ void StepChanges::delay_impacts(const std::vector<Body>& scene, const Vector3& g
     BodyState& state = bodies[index];
     const double time = struck.size_moment / struck.size;
     const Vector3 fallen = (body.mass * step) * gravity;
-    const Vector3 linear_by_springs = state.linear_momentum - fallen - struck.linear_before - struck.linear;
-    const Vector3 angular_by_springs = state.angular_momentum - struck.angular_before - struck.angular;
-    state.pose.position -= (struck.linear_moment + time * linear_by_springs) / body.mass;
+    const Vector3 linear_by_springs =
+        state.linear_momentum - fallen - struck.before.linear - struck.sum.linear;
+    const Vector3 angular_by_springs = state.angular_momentum - struck.before.angular - struck.sum.angular;
+    state.pose.position -= (struck.moment.linear + time * linear_by_springs) / body.mass;
     const Vector3 turned = -(world_inverse_inertia(body, state.pose.orientation) *
-                             (struck.angular_moment + time * angular_by_springs));
+                             (struck.moment.angular + time * angular_by_springs));
     const double angle = turned.norm();
     if (angle > 0.0) {
       state.pose.orientation =

@@ -31,7 +31,7 @@ class StepChanges {
   void reset(std::size_t bodies);
 
   /// The body's momenta are those at the end of the step, gravity included.
-  void mark_solved(int body) { solved_[static_cast<std::size_t>(body)] = true; }
+  void mark_solved(int body) { solved_[body] = true; }
   bool solved(std::size_t body) const { return solved_[body]; }
 
   /// Adds impacts whose impulses `bodies` already have.
@@ -54,10 +54,9 @@ class StepChanges {
  private:
   struct Struck {
     int body;
-    Vector3 linear_before, angular_before;  // momenta before the impacts
-    Vector3 linear, angular;                // sum of all impulses [N s], [N m s]
-    Vector3 linear_moment, angular_moment;  // sum of each impulse times its time
-    double size, size_moment;               // sum of magnitudes, and of each times its time
+    Twist before;              // momenta before the impacts
+    Twist sum, moment;         // of all impulses [N s], [N m s], and of each times its time
+    double size, size_moment;  // sum of magnitudes, and of each times its time
   };
   Struck& struck(int body, const BodyState& after);
 
@@ -71,8 +70,9 @@ class StepChanges {
 /// delay_impacts() removes displacements before impacts.
 struct ContactStep {
   const Scene& scene;
-  const Vector3& gravity;                   ///< [m/s^2]
-  double step;                              ///< [s]
+  const Vector3& gravity;  ///< [m/s^2]
+  double step;             ///< [s]
+  const ContactConfiguration& configuration;
   std::vector<Contact>& contacts;           ///< with hands, sorted by key; output: forces and impulses
   std::vector<BodyContact>& body_contacts;  ///< between bodies, sorted by key; likewise
   std::vector<BodyState>& bodies;  ///< the model changes momenta; free flight then advances the poses
@@ -96,6 +96,12 @@ class ContactModel {
   virtual ~ContactModel() = default;
   virtual void respond(ContactStep& step) = 0;
 };
+
+/// ContactModelEntry::make of a model that needs no settings.
+template <typename Model>
+std::unique_ptr<ContactModel> make_model(const ContactConfiguration&) {
+  return std::make_unique<Model>();
+}
 
 /// Contacts between objects follow the law of `implicit` under every model. Throws std::invalid_argument for
 /// an unknown name. The model of a scene with joints keeps references: to `state` for the joints, and to

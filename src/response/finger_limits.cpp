@@ -97,7 +97,7 @@ double pressed_by(const Contact& contact) {
 void share_strength(const HandStrength& hand, std::vector<Contact>& contacts) {
   std::array<std::array<double, kHandParts>, kMaxHands> depths{};
   const auto of = [&depths](const ContactKey& key) -> double& {
-    return depths[key.hand][static_cast<std::size_t>(finger_of(key.capsule))];
+    return depths[key.hand][finger_of(key.capsule)];
   };
   for (const Contact& contact : contacts) of(contact.key) += pressed_by(contact);
   for (Contact& contact : contacts) {

@@ -39,11 +39,9 @@ Vector3 velocity_at(const Motion6& motion, const Vector3& arm) {
 // unknowns are the contacts' impulses, and the velocities u* + M^-1 J' p are updated with each of them.
 // Fixtures and hands share the last body, whose 1/m and I^-1 are 0.
 void GaussSeidelSolver::begin(const ContactStep& step, const Island& island,
-                              const ContactConfiguration& configuration,
                               const std::vector<Vector3>& last_forces) {
   step_ = step.step;
   island_ = &island;
-  configuration_ = &configuration;
   last_forces_ = &last_forces;
   bodies_.clear();
   free_.clear();
@@ -55,7 +53,7 @@ void GaussSeidelSolver::begin(const ContactStep& step, const Island& island,
   for (const IslandBody& body : island.bodies)
     add_body(step.scene.bodies[body.body], step.bodies[body.body], step);
   bodies_.push_back({Motion6::Zero(), 0.0, Matrix3::Zero()});
-  make_hand_rows(step, island, configuration, rows_);
+  make_hand_rows(step, island, rows_);
   for (std::size_t row = 0; row < rows_.size(); ++row) add_patch(row, 1);
   std::size_t row = 0;
   for (const IslandBody& body : island.bodies) {
@@ -102,7 +100,7 @@ void GaussSeidelSolver::add_link(const ContactStep& step, const Range& range) {
   const std::size_t first = rows_.size();
   for (std::size_t index = range.first; index < range.last; ++index) {
     rows_.emplace_back();
-    make_link_row(step, *island_, *configuration_, step.body_contacts[index], rows_.back());
+    make_link_row(step, *island_, step.body_contacts[index], rows_.back());
     linked_.push_back(index);
   }
   add_patch(first, static_cast<int>(range.last - range.first));
@@ -131,7 +129,7 @@ double GaussSeidelSolver::missing_speed(const ContactStep& step, const Range& ra
     const int number = island_->place_of(contact.key.a);
     const Motion6& a = number < 0 ? bodies_.back().motion : body(number).motion;
     const Vector3 velocity = velocity_at(a, contact.arm_a) - velocity_at(b, contact.arm_b);
-    const double ahead = contact.depth > 0.0 ? look_ahead(step_, configuration_->damping) : step_;
+    const double ahead = contact.depth > 0.0 ? look_ahead(step_, step.configuration.damping) : step_;
     min_speed = std::min(min_speed, contact.normal.dot(velocity) - contact.depth / ahead);
   }
   return min_speed;
@@ -289,7 +287,7 @@ void GaussSeidelSolver::finish(ContactStep& step, const Island& island) {
     const Motion6 motion = patch.relative_motion(body(patch.a), body(patch.b));
     Motion6 impulse = Motion6::Zero();
     for (int k = 0; k < patch.count; ++k) {
-      const std::size_t i = patch.first + static_cast<std::size_t>(k);
+      const std::size_t i = patch.first + k;
       points_[i].add_impulses(impulse);
       patch.fill_response(step_, points_[i], motion, rows_[i]);
     }

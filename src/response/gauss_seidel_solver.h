@@ -17,8 +17,7 @@ class GaussSeidelSolver {
  public:
   /// `last_forces`: in the last step, of the step's contacts between bodies, then of those with hands [N];
   /// must outlive solve().
-  void begin(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
-             const std::vector<Vector3>& last_forces);
+  void begin(const ContactStep& step, const Island& island, const std::vector<Vector3>& last_forces);
   void solve(const ContactStep& step);
   /// True if any contact has a normal impulse or a bond.
   bool acts() const;
@@ -45,10 +44,9 @@ class GaussSeidelSolver {
   bool admit_closing(const ContactStep& step);
   void sweep();
   double accelerate(double last);
-  PatchBody& body(int number) { return bodies_[static_cast<std::size_t>(number)]; }
-  const PatchBody& body(int number) const { return bodies_[static_cast<std::size_t>(number)]; }
+  PatchBody& body(int number) { return bodies_[number]; }
+  const PatchBody& body(int number) const { return bodies_[number]; }
 
-  const ContactConfiguration* configuration_ = nullptr;
   const std::vector<Vector3>* last_forces_ = nullptr;
   const Island* island_ = nullptr;
   double step_ = 0.0;

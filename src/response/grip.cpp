@@ -29,7 +29,7 @@ std::array<double, kFingers> weights_of(const Grip& grip) {
   int count = 0;
   for (int finger = 0; finger < kFingers; ++finger) count += grip.takes_part(finger) ? 1 : 0;
   for (int finger = 0; finger < kFingers; ++finger)
-    if (grip.takes_part(finger)) result[static_cast<std::size_t>(finger)] = 0.25 / count;
+    if (grip.takes_part(finger)) result[finger] = 0.25 / count;
   if (!grip.by_palm) result[0] = 0.25;
   return result;
 }
@@ -77,11 +77,11 @@ Quaternion nearest_turn(const Matrix3& matrix) {
 }  // namespace
 
 std::size_t tip_point(int finger) {
-  return 3 + 2 * static_cast<std::size_t>(capsule_index(finger, 3));
+  return 3 + 2 * capsule_index(finger, 3);
 }
 
 Vector3 tip_of(const Hand& hand, int finger) {
-  return hand.capsules[static_cast<std::size_t>(capsule_index(finger, 3))].end;
+  return hand.capsules[capsule_index(finger, 3)].end;
 }
 
 Vector3 base_of(const Hand& hand, bool by_palm) {
@@ -95,10 +95,9 @@ double aperture(const Grip& grip, const Hand& hand) {
 DistalEnds distal_ends(const Hand& hand) {
   DistalEnds result;
   for (int finger = 0; finger < kFingers; ++finger) {
-    const Capsule& bone = hand.capsules[static_cast<std::size_t>(capsule_index(finger, 3))];
-    const std::size_t i = 2 * static_cast<std::size_t>(finger);
-    result[i] = hand.palm.to_local(bone.start);
-    result[i + 1] = hand.palm.to_local(bone.end);
+    const Capsule& bone = hand.capsules[capsule_index(finger, 3)];
+    result[2 * finger] = hand.palm.to_local(bone.start);
+    result[2 * finger + 1] = hand.palm.to_local(bone.end);
   }
   return result;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../collision/god_object.h"
 #include "impact.h"
 
 namespace mrhi {
@@ -18,7 +17,7 @@ constexpr std::size_t kMaxWork = 1500;
 constexpr std::size_t kMaxSmallIslandLinks = 16;
 /// Number of points that all sweeps of a large island's impact relax together, and the least number of
 /// sweeps.
-constexpr int kLargeIslandWork = 1500, kMinSweeps = 8;
+constexpr int kLargeIslandWork = 1500, kMinLargeIslandSweeps = 8;
 /// Slowest approach that is an impact in a large island [m/s].
 constexpr double kMinImpactSpeed = 1e-3;
 /// Impulses diverge if their sum exceeds this multiple of the largest sum that the impacts can need. Each
@@ -145,7 +144,7 @@ void ImpactSolver::resolve(ContactStep& step, const Islands& islands, ImpactFric
     if (points_.empty()) continue;
     if (large) {
       const int sweeps = kLargeIslandWork / static_cast<int>(points_.size());
-      limits_.max_sweeps = std::clamp(sweeps, kMinSweeps, kLargeIslandLimits.max_sweeps);
+      limits_.max_sweeps = std::clamp(sweeps, kMinLargeIslandSweeps, kLargeIslandLimits.max_sweeps);
     }
     if (by_hand_ || large) {
       resolve_simultaneously(step);
@@ -221,15 +220,15 @@ void ImpactSolver::collect_in_joints(ContactStep& step, const Island& island,
       add_point(island.place_of(contact.key.a), contact.arm_a, -1.0);
     add_in_joints(step.step, point, contact.material);
   }
-  for (Eigen::Index unknown = 0; unknown < velocity_.size(); ++unknown) {
-    if (problem_->joint_of(unknown) == LinkageBody::kNone) continue;
-    const auto index = static_cast<std::size_t>(problem_->joint_of(unknown));
-    const Joint& joint = step.scene.joints[index];
-    const double sign = velocity_[unknown] > 0.0 ? 1.0 : -1.0, position = joints[index].position;
+  for (const IslandProblem::Unknown& unknown : problem_->unknowns()) {
+    if (unknown.joint == LinkageBody::kNone) continue;
+    const Joint& joint = step.scene.joints[unknown.joint];
+    const double sign = velocity_[unknown.row] > 0.0 ? 1.0 : -1.0;
+    const double position = joints[unknown.joint].position;
     const double travel = sign > 0.0 ? joint.upper - position : position - joint.lower;
     if (joint.restitution <= 0.0 || travel <= 0.0) continue;
     const ImpactPoint point = point_in_joints(Vector3::UnitX(), travel);
-    coordinates_[points_.size()].jacobian(0, unknown) = sign;
+    coordinates_[points_.size()].jacobian(0, unknown.row) = sign;
     Material smooth;
     smooth.restitution = joint.restitution;
     smooth.static_friction = 0.0;

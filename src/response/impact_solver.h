@@ -6,7 +6,6 @@
 
 #include "contact_step.h"
 #include "impact.h"
-#include "impact_point.h"
 #include "island_problem.h"
 #include "islands.h"
 

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <vector>
+
+#include "../joints/linkage.h"
 #include "gauss_seidel_solver.h"
 #include "impact_solver.h"
 #include "island_problem.h"
+#include "mr_hand_interaction/interaction.h"
+#include "mr_hand_interaction/simulation_state.h"
 
 namespace mrhi {
 
@@ -13,7 +18,6 @@ namespace mrhi {
 /// contacts are additions: it is not the limit of the seed model for small steps. See docs/contact.md.
 class ImplicitModel : public ContactModel {
  public:
-  explicit ImplicitModel(const ContactConfiguration& configuration) : configuration_(configuration) {}
   void respond(ContactStep& step) override;
 
  protected:
@@ -22,8 +26,8 @@ class ImplicitModel : public ContactModel {
   void resolve_impacts(ContactStep& step);
   void solve_islands(ContactStep& step);
   static void end_contacts(ContactStep& step);
-  ImpactFriction impact_friction() const {
-    return configuration_.impact_friction ? ImpactFriction::coulomb : ImpactFriction::none;
+  static ImpactFriction impact_friction(const ContactStep& step) {
+    return step.configuration.impact_friction ? ImpactFriction::coulomb : ImpactFriction::none;
   }
 
  private:
@@ -34,10 +38,37 @@ class ImplicitModel : public ContactModel {
   std::vector<Vector3> last_forces_;  // of contacts between bodies, then with hands [N]
 
  protected:
-  const ContactConfiguration configuration_;
   Islands islands_;
   ImpactSolver impacts_;
   IslandProblem problem_;
+};
+
+/// The implicit model for scenes with joints. Solves islands with joints in joint coordinates, together with
+/// their contacts, and advances their linkages through the step. Scenes without joints do not use it.
+class JointedModel : public ImplicitModel {
+ public:
+  /// Keeps references to the state, for the joints' state, and to the events, to which it adds those of
+  /// joints.
+  JointedModel(const Configuration& configuration, const Scene& scene, SimulationState& state,
+               std::vector<Event>& events);
+  void respond(ContactStep& step) override;
+
+ private:
+  void place(const ContactStep& step, std::size_t linkage);
+  void respond(ContactStep& step, const Island& island);
+  void fly(const ContactStep& step);
+  void note(std::size_t joint);
+
+  const Scene& scene_;
+  SimulationState& state_;
+  std::vector<Event>& events_;
+  const std::vector<Linkage> linkages_;
+  std::vector<std::vector<int>> groups_;  // bodies of each linkage
+  std::vector<LinkageMotion> motions_;
+  std::vector<LinkageFlight> flights_;
+  std::vector<char> awake_, solved_;  // by linkage; solved: momenta include gravity
+  const double usual_step_;           // regular step [s]
+  Eigen::VectorXd positions_;
 };
 
 }  // namespace mrhi

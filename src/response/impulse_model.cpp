@@ -8,7 +8,16 @@ namespace {
 /// object.
 class ImpulseModel : public ContactModel {
  public:
-  void respond(ContactStep& step) override;
+  // Eqs. 9 to 15 alone. `struck` is reset, so each step is a new approach. Without an approach no force acts,
+  // so a body slides out of any grip (docs/speed_accuracy.md#where-each-contact-model-is-stable).
+  void respond(ContactStep& step) override {
+    for (Contact& contact : step.contacts) {
+      contact.force.setZero();
+      contact.struck = false;
+    }
+    islands_.build(step);
+    impacts_.resolve(step, islands_, ImpactFriction::none);
+  }
 
  private:
   Islands islands_;
@@ -17,21 +26,7 @@ class ImpulseModel : public ContactModel {
 
 }  // namespace
 
-// Eqs. 9 to 15 alone. `struck` is reset, so each step is a new approach. Without an approach no force acts,
-// so a body slides out of any grip (docs/speed_accuracy.md#where-each-contact-model-is-stable).
-void ImpulseModel::respond(ContactStep& step) {
-  for (Contact& contact : step.contacts) {
-    contact.force.setZero();
-    contact.struck = false;
-  }
-  islands_.build(step);
-  impacts_.resolve(step, islands_, ImpactFriction::none);
-}
-
 /// The default stiffness is the paper's.
-extern const ContactModelEntry impulse_model{
-    "impulse", 3, 100.0, [](const ContactConfiguration&) -> std::unique_ptr<ContactModel> {
-      return std::make_unique<ImpulseModel>();
-    }};
+extern const ContactModelEntry impulse_model{"impulse", 3, 100.0, make_model<ImpulseModel>};
 
 }  // namespace mrhi

@@ -1,12 +1,12 @@
 // The contact problem of an island with joints. Joints are solved in their own coordinates, without
 // multipliers. So no constraint drifts or needs stabilisation (Baumgarte 1972), and M = J' M_b J is positive
 // definite, with M_b the bodies' masses and J their Jacobian. J and M are those at the start of the step; the
-// flight accounts for the rotation of axes in the step (linkage_flight.h).
+// flight accounts for the rotation of axes in the step (LinkageFlight).
 #include <algorithm>
 #include <cmath>
 
-#include "../collision/god_object.h"
 #include "island_problem.h"
+#include "penetration_model.h"
 
 namespace mrhi {
 namespace {
@@ -15,15 +15,13 @@ namespace {
 constexpr double kMomentumTolerance = 1e-6;
 /// Largest error, over scale(), at which the forces are a warm start of the next step.
 constexpr double kMaxWarmStartError = 0.01;
-/// Separation speed beyond which springs apply no force [m/s].
-constexpr double kReleaseSpeed = 0.1;
 /// Largest number of bodies that are solved without a bound on effort.
 constexpr std::size_t kMaxUnboundedBodies = 4;
 
 /// Number of unknowns from which sparse factors are cheaper.
 constexpr Eigen::Index kSparseUnknowns = 100;
 
-constexpr int kNoJoint = -1;
+constexpr int kNoJoint = LinkageBody::kNone;
 
 }  // namespace
 
@@ -46,8 +44,7 @@ void Factors::solve_in_place(Eigen::VectorXd& right_hand_side) const {
 
 // u0 = M^-1 sum J_b' p_b projects the bodies' momenta onto the joints. The remainder is the joints' reaction,
 // not an error of this step. u* = u0 + h M^-1 J' m g.
-void IslandProblem::begin(const ContactStep& step, const Island& island,
-                          const ContactConfiguration& configuration, const std::vector<Linkage>& linkages,
+void IslandProblem::begin(const ContactStep& step, const Island& island, const std::vector<Linkage>& linkages,
                           std::vector<LinkageMotion>& motions, const std::vector<JointState>& joints,
                           double usual) {
   begin(island.bodies.size(), true);
@@ -56,7 +53,7 @@ void IslandProblem::begin(const ContactStep& step, const Island& island,
   scene_ = &step.scene;
   acts_ = is_touched(step, island);
   effort_ = effort_in_joints();
-  make_rows(step, island, configuration);
+  make_rows(step, island);
   number_unknowns(step, island, linkages, motions);
   mass_factors_.compute(mass_);
   carried_ = std::sqrt(gradient_.squaredNorm());
@@ -85,9 +82,7 @@ IslandProblem::Effort IslandProblem::effort_in_joints() const {
 void IslandProblem::number_unknowns(const ContactStep& step, const Island& island,
                                     const std::vector<Linkage>& linkages,
                                     std::vector<LinkageMotion>& motions) {
-  const auto has = [&](const Linkage& linkage) {
-    return island.place_of(static_cast<std::size_t>(linkage.bodies.front().body)) >= 0;
-  };
+  const auto has = [&](const Linkage& linkage) { return island.place_of(linkage.bodies.front().body) >= 0; };
   int count = 0;
   for (const Linkage& linkage : linkages) count += has(linkage) ? linkage.unknowns() : 0;
   for (const IslandBody& body : island.bodies) count += step.scene.bodies[body.body].flies ? 6 : 0;
@@ -100,11 +95,16 @@ void IslandProblem::number_unknowns(const ContactStep& step, const Island& islan
   unknowns_.clear();
   mass_blocks_.clear();
   columns_.resize(island.bodies.size());
+  Eigen::Index first = 0;
   for (std::size_t i = 0; i < linkages.size(); ++i) {
-    if (has(linkages[i])) add_linkage(step, island, linkages[i], motions[i]);
+    if (!has(linkages[i])) continue;
+    add_linkage(step, island, linkages[i], motions[i], first);
+    first += linkages[i].unknowns();
   }
   for (const IslandBody& body : island.bodies) {
-    if (step.scene.bodies[body.body].flies) add_body_without_joint(step, island, body.body);
+    if (!step.scene.bodies[body.body].flies) continue;
+    add_body_without_joint(step, island, body.body, first);
+    first += 6;
   }
 }
 
@@ -114,38 +114,37 @@ void IslandProblem::number_unknowns(const ContactStep& step, const Island& islan
 /// A joint's weight converts its torque to a force by k^2 = M_ii / m of its child body. For a prismatic joint
 /// this has no unit: the moved mass over the child's.
 void IslandProblem::add_linkage(const ContactStep& step, const Island& island, const Linkage& linkage,
-                                LinkageMotion& motion) {
-  const auto first = static_cast<Eigen::Index>(unknowns_.size());
+                                LinkageMotion& motion, Eigen::Index first) {
   const Eigen::Index count = linkage.unknowns();
   mass_.block(first, first, count, count) = motion.mass();
   mass_blocks_.push_back({first, count});
   auto momenta = gradient_.segment(first, count), fall = fall_.segment(first, count);
   for (int i = 0; i < motion.size(); ++i) {
-    const LinkageBody& link = linkage.bodies[static_cast<std::size_t>(i)];
+    const LinkageBody& link = linkage.bodies[i];
     const Body& body = motion.body(i);
     const auto index = static_cast<std::size_t>(link.body);
     motion.push(i, step.bodies[index].linear_momentum, step.bodies[index].angular_momentum, momenta);
     motion.push(i, (step_ * body.mass) * step.gravity, Vector3::Zero(), fall);
-    columns_[static_cast<std::size_t>(island.place_of(index))] = {first, count};
+    columns_[island.place_of(index)] = {first, count};
     motion.add_jacobian(i, jacobian_.block(6 * island.place_of(index), first, 6, count));
     if (link.joint == LinkageBody::kNone) {
       weights_.segment<3>(first).setOnes();
       weights_.segment<3>(first + 3).setConstant(3.0 * body.mass / body.inertia.trace());
-      unknowns_.insert(unknowns_.end(), 6, {kNoJoint, link.body});
+      unknowns_.push_back({kNoJoint, link.body, first});
     } else {
       const Eigen::Index column = first + linkage.column(i);
       weights_[column] = body.mass / mass_(column, column);
-      unknowns_.push_back({link.joint, link.body});
+      unknowns_.push_back({link.joint, link.body, column});
     }
   }
 }
 
-void IslandProblem::add_body_without_joint(const ContactStep& step, const Island& island, std::size_t index) {
-  const auto first = static_cast<Eigen::Index>(unknowns_.size());
+void IslandProblem::add_body_without_joint(const ContactStep& step, const Island& island, std::size_t index,
+                                           Eigen::Index first) {
   const Body& body = step.scene.bodies[index];
   const BodyState& state = step.bodies[index];
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
-  columns_[static_cast<std::size_t>(island.place_of(index))] = {first, 6};
+  columns_[island.place_of(index)] = {first, 6};
   mass_blocks_.push_back({first, 6});
   jacobian_.block<6, 6>(6 * island.place_of(index), first).setIdentity();
   mass_.block<3, 3>(first, first).diagonal().setConstant(body.mass);
@@ -154,29 +153,26 @@ void IslandProblem::add_body_without_joint(const ContactStep& step, const Island
   fall_.segment<3>(first) = (step_ * body.mass) * step.gravity;
   weights_.segment<3>(first).setOnes();
   weights_.segment<3>(first + 3).setConstant(3.0 * body.mass / body.inertia.trace());
-  unknowns_.insert(unknowns_.end(), 6, {kNoJoint, static_cast<int>(index)});
+  unknowns_.push_back({kNoJoint, static_cast<int>(index), first});
 }
 
-// Bodies without joints have six unknowns each, so the second loop skips over them in sixes.
 void IslandProblem::start_with(const Vector& velocity, const ContactStep& step,
                                const std::vector<JointState>& joints) {
   start_ = velocity;  // `velocity` may be start_ itself
   free_ = start_ + fall_;
   velocity_ = free_;
-  laws_.resize(unknowns_.size());
-  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    if (unknowns_[i].joint == kNoJoint) continue;
-    const auto joint = static_cast<std::size_t>(unknowns_[i].joint);
-    laws_[i].begin(scene_->joints[joint], joints[joint], mass_(row, row), step_, usual_);
-    acts_ = acts_ || laws_[i].acts(std::max(std::abs(start_[row]), std::abs(free_[row])));
-    velocity_[row] += step_ * joints[joint].pushed;
-  }
-  for (std::size_t i = 0; i < unknowns_.size(); i += unknowns_[i].joint == kNoJoint ? 6 : 1) {
-    if (unknowns_[i].joint != kNoJoint) continue;
-    const Twist& pushed = step.bodies[static_cast<std::size_t>(unknowns_[i].body)].pushed;
-    velocity_.segment<3>(static_cast<Eigen::Index>(i)) += step_ * pushed.linear;
-    velocity_.segment<3>(static_cast<Eigen::Index>(i) + 3) += step_ * pushed.angular;
+  laws_.resize(velocity.size());
+  for (const Unknown& unknown : unknowns_) {
+    const Eigen::Index row = unknown.row;
+    if (unknown.joint == kNoJoint) {
+      const Twist& pushed = step.bodies[unknown.body].pushed;
+      velocity_.segment<3>(row) += step_ * pushed.linear;
+      velocity_.segment<3>(row + 3) += step_ * pushed.angular;
+      continue;
+    }
+    laws_[row].begin(scene_->joints[unknown.joint], joints[unknown.joint], mass_(row, row), step_, usual_);
+    acts_ = acts_ || laws_[row].acts(std::max(std::abs(start_[row]), std::abs(free_[row])));
+    velocity_[row] += step_ * joints[unknown.joint].pushed;
   }
 }
 
@@ -194,11 +190,10 @@ void IslandProblem::add_joint_forces() {
         jacobian_.block(row, first, 6, count).transpose() * body_impulse_.segment<6>(row);
   }
   scale_ += kMomentumTolerance * carried_;
-  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    if (unknowns_[i].joint == kNoJoint) continue;
-    const auto row = static_cast<Eigen::Index>(i);
-    gradient_[row] -= step_ * laws_[i].force(velocity_[row]);
-    scale_ += step_ * laws_[i].size(velocity_[row]) * std::sqrt(weights_[row]);
+  for (const auto& [joint, body, row] : unknowns_) {
+    if (joint == kNoJoint) continue;
+    gradient_[row] -= step_ * laws_[row].force(velocity_[row]);
+    scale_ += step_ * laws_[row].size(velocity_[row]) * std::sqrt(weights_[row]);
   }
 }
 
@@ -216,10 +211,8 @@ void IslandProblem::find_body_velocities() {
 /// falls while its velocity grows.
 double IslandProblem::joint_energy() const {
   double sum = 0.0;
-  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    if (unknowns_[i].joint != kNoJoint)
-      sum += step_ * laws_[i].energy(velocity_[static_cast<Eigen::Index>(i)]);
-  }
+  for (const auto& [joint, body, row] : unknowns_)
+    if (joint != kNoJoint) sum += step_ * laws_[row].energy(velocity_[row]);
   return sum;
 }
 
@@ -267,10 +260,8 @@ void IslandProblem::factorise_joints() {
         hessian_(entry(i), entry(j)) += point_jacobian_.col(i).dot(point_product_.col(j)) +
                                         step_ * response.torque_slope * spin_jacobian_[i] * spin_jacobian_[j];
   }
-  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    if (unknowns_[i].joint != kNoJoint) hessian_(row, row) += step_ * laws_[i].slope(velocity_[row]);
-  }
+  for (const auto& [joint, body, row] : unknowns_)
+    if (joint != kNoJoint) hessian_(row, row) += step_ * laws_[row].slope(velocity_[row]);
   factors_.compute(hessian_);
 }
 
@@ -300,19 +291,19 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island,
   // Forces are the warm start of the next step, unless their error is large.
   const double max_error = kMaxWarmStartError * scale();
   const bool lasts = agree || error_squared() <= max_error * max_error;
-  for (std::size_t i = 0; i < unknowns_.size(); i += unknowns_[i].joint == kNoJoint ? 6 : 1) {
-    const auto row = static_cast<Eigen::Index>(i);
-    if (unknowns_[i].joint == kNoJoint) {
-      Twist& pushed = step.bodies[static_cast<std::size_t>(unknowns_[i].body)].pushed;
+  for (const Unknown& unknown : unknowns_) {
+    const Eigen::Index row = unknown.row;
+    if (unknown.joint == kNoJoint) {
+      Twist& pushed = step.bodies[unknown.body].pushed;
       pushed = Twist();
       if (!lasts) continue;
       pushed.linear = (velocity_.segment<3>(row) - free_.segment<3>(row)) / step_;
       pushed.angular = (velocity_.segment<3>(row + 3) - free_.segment<3>(row + 3)) / step_;
       continue;
     }
-    JointState& joint = joints[static_cast<std::size_t>(unknowns_[i].joint)];
+    JointState& joint = joints[unknown.joint];
     joint.pushed = lasts ? (velocity_[row] - free_[row]) / step_ : 0.0;
-    laws_[i].settle(velocity_[row], joint);
+    laws_[row].settle(velocity_[row], joint);
   }
   // u minus M^-1 times the residual: momenta then agree with the reported forces.
   if (agree || nearly_agrees()) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "../collision/god_object.h"
 #include "impact.h"
 
 namespace mrhi {
@@ -81,16 +80,15 @@ void add_slope(const SpringContact& row, const Symmetric3& s, const Triple& r, L
   for (std::size_t i = 0; i < Cholesky6::kEntries; ++i) sum[i] += entries[i];
 }
 
-void IslandProblem::begin(const ContactStep& step, const Island& island,
-                          const ContactConfiguration& configuration) {
+void IslandProblem::begin(const ContactStep& step, const Island& island) {
   begin(1, false);
   step_ = step.step;
   const std::size_t body = island.bodies.begin()->body;
   begin_body(step, body);
-  make_rows(step, island, configuration);
+  make_rows(step, island);
   if (step.operators == nullptr || island.links.size() > 0) return;
   const int op = coupled_operator(step, island);
-  if (op >= 0) couple(step, step.scene.bodies[body], step.bodies[body], static_cast<std::size_t>(op));
+  if (op >= 0) couple(step, step.scene.bodies[body], step.bodies[body], op);
 }
 
 void IslandProblem::begin(std::size_t bodies, bool in_joints) {
@@ -106,13 +104,12 @@ void IslandProblem::begin(std::size_t bodies, bool in_joints) {
     vector->resize(6);
 }
 
-void IslandProblem::make_rows(const ContactStep& step, const Island& island,
-                              const ContactConfiguration& configuration) {
-  make_hand_rows(step, island, configuration, rows_);
+void IslandProblem::make_rows(const ContactStep& step, const Island& island) {
+  make_hand_rows(step, island, rows_);
   std::size_t row = rows_.size();
   rows_.resize(row + island.links.size());
   for (const Link& link : island.links)
-    make_link_row(step, island, configuration, step.body_contacts[link.index], rows_[row++]);
+    make_link_row(step, island, step.body_contacts[link.index], rows_[row++]);
 }
 
 // M (u - u*) contains no gyroscopic term w x I w. Only torques change L; the flight then turns the axes under
@@ -141,7 +138,7 @@ void IslandProblem::begin_body(const ContactStep& step, std::size_t index) {
 int IslandProblem::coupled_operator(const ContactStep& step, const Island& island) const {
   const IslandBody& body = *island.bodies.begin();
   const double limit = step.scene.bodies[body.body].mass / kMinCoupledMassRatio;
-  const auto is_light = [&](int op) { return step.scene.bodies[static_cast<std::size_t>(op)].mass < limit; };
+  const auto is_light = [&](int op) { return step.scene.bodies[op].mass < limit; };
   const std::vector<Operator>& operators = step.scene.operators;
   if (std::none_of(operators.begin(), operators.end(), [&](const Operator& o) { return is_light(o.body); }))
     return -1;
@@ -197,15 +194,14 @@ void IslandProblem::couple(const ContactStep& step, const Body& body, const Body
 // Body 1 of the rows is the operator; body 2 is a fixture, which has no number: u = u_1 + v + w x r, with u_1
 // the hand's velocity relative to the operator.
 void IslandProblem::begin_operator(const ContactStep& step, std::size_t body,
-                                   const std::vector<Contact*>& contacts, const Twist& carrier,
-                                   const ContactConfiguration& configuration) {
+                                   const std::vector<Contact*>& contacts, const Twist& carrier) {
   begin(1, false);
   step_ = step.step;
   begin_body(step, body);
   rows_.resize(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     SpringContact& row = rows_[i];
-    make_spring(step, configuration, *contacts[i], row);
+    make_spring(step, *contacts[i], row);
     row.a = 0, row.b = SpringContact::kNone;
     row.arm_a = triple(contacts[i]->point - step.bodies[body].pose.position);
     leave_carrier(carrier, row.arm_a, row);
@@ -253,12 +249,12 @@ void IslandProblem::evaluate(bool renew_limits) {
     Triple torque = response.torque * row.spring.normal;
     if (row.tilts) torque = torque + response.force.dot(row.spring.normal) * row.tilt;
     if (row.b != SpringContact::kNone) {
-      Wrench& sum = wrenches_[static_cast<std::size_t>(row.b)];
+      Wrench& sum = wrenches_[row.b];
       sum.force = sum.force + response.force;
       sum.torque = sum.torque + (row.arm.cross(response.force) + torque);
     }
     if (row.a != SpringContact::kNone) {
-      Wrench& sum = wrenches_[static_cast<std::size_t>(row.a)];
+      Wrench& sum = wrenches_[row.a];
       sum.force = sum.force - response.force;
       sum.torque = sum.torque - (row.arm_a.cross(response.force) + torque);
     }
@@ -302,9 +298,7 @@ void IslandProblem::factorise() {
     add_slope(row, point_slope(row), row.b != SpringContact::kNone ? row.arm : row.arm_a, sum);
   }
   for (double& one : sum) one *= step_;
-  const auto entry = [&sum](int row, int column) -> double& {
-    return sum[static_cast<std::size_t>(Cholesky6::at(row, column))];
-  };
+  const auto entry = [&sum](int row, int column) -> double& { return sum[Cholesky6::at(row, column)]; };
   for (int row = 0; coupled_ && row < 6; ++row) {
     for (int column = 0; column <= row; ++column) entry(row, column) += mass_(row, column);
   }

@@ -1,17 +1,70 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <Eigen/SparseCholesky>
 #include <array>
 #include <vector>
 
 #include "../joints/joint_law.h"
 #include "../joints/linkage.h"
-#include "cholesky6.h"
 #include "islands.h"
 #include "spring_contact.h"
 
 namespace mrhi {
+
+/// Solves A x = b for a symmetric positive definite 6 x 6 matrix by the factors L D L'. Only the lower
+/// triangle is stored, row by row. Loops are unrolled, which is several times as fast as code for any size.
+///
+///     A = L D L',   d_k = a_kk,   l_ik = a_ik / d_k,   a_ij -= l_ik a_jk for i >= j > k      (k = 0 to 5)
+///     L y = b,   D z = y,   L' x = z
+///
+/// Right-looking, column by column (Golub & Van Loan, Matrix Computations, 4.1). Unlike L L' it needs no
+/// roots, and only six divisions. Pivots are not needed, as A is positive definite.
+class Cholesky6 {
+ public:
+  static constexpr int kEntries = 21;
+  static constexpr int at(int row, int column) { return row * (row + 1) / 2 + column; }
+
+  /// `entries`: the lower triangle of A.
+  void factorise(const std::array<double, kEntries>& entries) {
+    for (std::size_t i = 0; i < kEntries; ++i) lower_[i] = entries[i];
+#pragma GCC unroll 6
+    for (int k = 0; k < 6; ++k) {
+      inverse_[k] = 1.0 / lower_[at(k, k)];
+      double column[6];
+#pragma GCC unroll 6
+      for (int i = k + 1; i < 6; ++i) {
+        column[i] = lower_[at(i, k)];
+        lower_[at(i, k)] *= inverse_[k];
+      }
+#pragma GCC unroll 6
+      for (int i = k + 1; i < 6; ++i) {
+#pragma GCC unroll 6
+        for (int j = k + 1; j <= i; ++j) lower_[at(i, j)] -= lower_[at(i, k)] * column[j];
+      }
+    }
+  }
+
+  Eigen::Matrix<double, 6, 1> solve(Eigen::Matrix<double, 6, 1> x) const {
+#pragma GCC unroll 6
+    for (int i = 0; i < 6; ++i) {
+#pragma GCC unroll 6
+      for (int k = 0; k < i; ++k) x[i] -= lower_[at(i, k)] * x[k];
+    }
+#pragma GCC unroll 6
+    for (int i = 5; i >= 0; --i) {
+      x[i] *= inverse_[i];
+#pragma GCC unroll 6
+      for (int k = i + 1; k < 6; ++k) x[i] -= lower_[at(k, i)] * x[k];
+    }
+    return x;
+  }
+
+ private:
+  double lower_[kEntries];  // L without its diagonal of ones, where D is stored
+  double inverse_[6];       // of D
+};
 
 /// The lower triangle of a symmetric 6 x 6 matrix, row by row (Cholesky6::at).
 using Lower6 = std::array<double, Cholesky6::kEntries>;
@@ -55,15 +108,14 @@ class Factors {
 class IslandProblem {
  public:
   /// An island of one body.
-  void begin(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
+  void begin(const ContactStep& step, const Island& island);
   /// An island with joints. `linkages` and their placed motions are those of the whole scene. `usual`: the
   /// regular step; the last one of a frame may be shorter [s].
-  void begin(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
-             const std::vector<Linkage>& linkages, std::vector<LinkageMotion>& motions,
-             const std::vector<JointState>& joints, double usual);
+  void begin(const ContactStep& step, const Island& island, const std::vector<Linkage>& linkages,
+             std::vector<LinkageMotion>& motions, const std::vector<JointState>& joints, double usual);
   /// The body of an operator whose hands touch fixtures. `carrier`: motion that carries the hands.
   void begin_operator(const ContactStep& step, std::size_t body, const std::vector<Contact*>& contacts,
-                      const Twist& carrier, const ContactConfiguration& configuration);
+                      const Twist& carrier);
 
   /// Returns true if the velocity found is consistent with the forces.
   bool solve();
@@ -95,14 +147,17 @@ class IslandProblem {
   struct Columns {
     Eigen::Index first, count;
   };
-  const Columns& columns_of(int number) const { return columns_[static_cast<std::size_t>(number)]; }
+  const Columns& columns_of(int number) const { return columns_[number]; }
   /// Adds `sign` times the Jacobian of the point of body `number` at `arm`, to the body's own columns.
   void add_point_jacobian(int number, const Vector3& arm, double sign, Eigen::Ref<PointJacobian> own) const;
-  /// Joint whose velocity an unknown is, as an index in Scene::joints; -1 for a body without a joint.
-  int joint_of(Eigen::Index unknown) const { return unknowns_[static_cast<std::size_t>(unknown)].joint; }
-  void note_limit_impulse(Eigen::Index joint, double impulse) {
-    laws_[static_cast<std::size_t>(joint)].note_limit_impulse(impulse);
-  }
+  /// The velocity of a joint, or the six of a body without one.
+  struct Unknown {
+    int joint;  // index in Scene::joints, or LinkageBody::kNone
+    int body;   // the body that it moves
+    Eigen::Index row;
+  };
+  const std::vector<Unknown>& unknowns() const { return unknowns_; }
+  void note_limit_impulse(Eigen::Index joint, double impulse) { laws_[joint].note_limit_impulse(impulse); }
   /// Multiplies by the inverse mass matrix, in place: momenta become velocities.
   void solve_mass(Vector& momenta) const { mass_factors_.solve_in_place(momenta); }
   /// True if anything but gravity acts or may act.
@@ -121,10 +176,6 @@ class IslandProblem {
     std::size_t index;  // in Scene::bodies
     double mass;
     Matrix3 inertia;  // world axes
-  };
-  struct Unknown {
-    int joint;  // index in Scene::joints; -1 for the six of a body without a joint
-    int body;   // the body that it moves
   };
   /// Limits of the iteration.
   struct Effort {
@@ -151,7 +202,7 @@ class IslandProblem {
 
   void begin_body(const ContactStep& step, std::size_t index);
   void begin(std::size_t bodies, bool in_joints);
-  void make_rows(const ContactStep& step, const Island& island, const ContactConfiguration& configuration);
+  void make_rows(const ContactStep& step, const Island& island);
   int coupled_operator(const ContactStep& step, const Island& island) const;
   void couple(const ContactStep& step, const Body& body, const BodyState& state, std::size_t op);
   void finish_body(bool agree, ContactStep& step) const;
@@ -168,8 +219,9 @@ class IslandProblem {
   void number_unknowns(const ContactStep& step, const Island& island, const std::vector<Linkage>& linkages,
                        std::vector<LinkageMotion>& motions);
   void add_linkage(const ContactStep& step, const Island& island, const Linkage& linkage,
-                   LinkageMotion& motion);
-  void add_body_without_joint(const ContactStep& step, const Island& island, std::size_t index);
+                   LinkageMotion& motion, Eigen::Index first);
+  void add_body_without_joint(const ContactStep& step, const Island& island, std::size_t index,
+                              Eigen::Index first);
   void find_body_velocities();
   void add_joint_forces();
   double joint_energy() const;
@@ -202,7 +254,7 @@ class IslandProblem {
   double usual_ = 0.0, carried_ = 0.0;
   const Scene* scene_ = nullptr;
   std::vector<Unknown> unknowns_;
-  std::vector<JointLaw> laws_;        // by unknown; used for joints
+  std::vector<JointLaw> laws_;        // by row; used for joints
   std::vector<Columns> columns_;      // by body
   std::vector<Columns> mass_blocks_;  // unknowns of each linkage, and of each body without a joint
   Matrix jacobian_;                   // of the bodies by the unknowns

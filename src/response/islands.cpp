@@ -11,8 +11,7 @@ namespace {
 template <typename Predicate>
 bool any_contact(const ContactStep& step, const Island& island, Predicate predicate) {
   return std::any_of(island.bodies.begin(), island.bodies.end(), [&](const IslandBody& body) {
-    return std::any_of(step.contacts.begin() + static_cast<std::ptrdiff_t>(body.first),
-                       step.contacts.begin() + static_cast<std::ptrdiff_t>(body.last), predicate);
+    return std::any_of(step.contacts.begin() + body.first, step.contacts.begin() + body.last, predicate);
   });
 }
 
@@ -38,7 +37,7 @@ bool has_persistent_hand_contact(const ContactStep& step, const Island& island) 
 int Islands::root_of(int body) {
   auto b = static_cast<std::size_t>(body);
   while (parent_[b] != static_cast<int>(b)) {
-    parent_[b] = parent_[static_cast<std::size_t>(parent_[b])];
+    parent_[b] = parent_[parent_[b]];
     b = static_cast<std::size_t>(parent_[b]);
   }
   return static_cast<int>(b);
@@ -46,7 +45,7 @@ int Islands::root_of(int body) {
 
 void Islands::unite(int a, int b) {
   a = root_of(a), b = root_of(b);
-  parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  parent_[std::max(a, b)] = std::min(a, b);
 }
 
 // Contacts are sorted by body, so those of a body are adjacent.
@@ -94,7 +93,7 @@ void Islands::link_bodies(const ContactStep& step, const std::vector<std::vector
   }
   for (const std::vector<int>& group : groups) {
     for (const int body : group) {
-      list(static_cast<std::size_t>(body));
+      list(body);
       unite(group.front(), body);
     }
   }

@@ -1,6 +1,6 @@
 #include "contact_step.h"
 #include "impact_solver.h"
-#include "penetration_force.h"
+#include "penetration_model.h"
 
 namespace mrhi {
 namespace {
@@ -9,11 +9,17 @@ namespace {
 /// friction during contact (3.4.2), as docs/contact.md reads the equations.
 class SeedModel : public ContactModel {
  public:
-  explicit SeedModel(const ContactConfiguration& configuration) : configuration_(configuration) {}
-  void respond(ContactStep& step) override;
+  // The paper's order, 3.4.1 and then 3.4.2, matters: the springs' forces fade by the velocities after the
+  // impact. The impact has no friction, since J = j n (Eq. 9).
+  void respond(ContactStep& step) override {
+    islands_.build(step);
+    impacts_.resolve(step, islands_, ImpactFriction::none);
+    // The approach of a penetrating phalanx has ended, with or without an impact.
+    for (Contact& contact : step.contacts) contact.struck = contact.struck || contact.depth > 0.0;
+    penetration_phase(step);
+  }
 
  private:
-  const ContactConfiguration configuration_;
   Islands islands_;
   ImpactSolver impacts_;
 };
@@ -62,8 +68,7 @@ Vector3 literal_force(const Material& material, Contact& contact) {
   const Vector3 to_middle = (0.5 - contact.axis_parameter) * contact.axis;
   const double depth = contact.depth - contact.radius - n.dot(to_middle);
   if (contact.ignored || depth <= 0.0) return contact.force;
-  const Vector3 reach = contact.hand_point - contact.point;
-  const Vector3 stretch = reach - n.dot(reach) * n;
+  const Vector3 stretch = stretch_of(contact);
   const bool inside = stretch.norm() <= material.static_friction * depth;
   contact.friction = inside ? Friction::sticking : Friction::slipping;
   const double kept = inside ? 1.0 : material.dynamic_friction;
@@ -86,21 +91,11 @@ void LiteralSeedModel::respond(ContactStep& step) {
 
 }  // namespace
 
-// The paper's order, 3.4.1 and then 3.4.2, matters: the springs' forces fade by the velocities after the
-// impact. The impact has no friction, since J = j n (Eq. 9).
-void SeedModel::respond(ContactStep& step) {
-  islands_.build(step);
-  impacts_.resolve(step, islands_, ImpactFriction::none);
-  // The approach of a penetrating phalanx has ended, with or without an impact.
-  for (Contact& contact : step.contacts) contact.struck = contact.struck || contact.depth > 0.0;
-  penetration_phase(configuration_, step);
-}
-
 /// The default stiffness is the paper's.
 extern const ContactModelEntry seed_model{
     "seed", 1, 100.0, [](const ContactConfiguration& configuration) -> std::unique_ptr<ContactModel> {
       if (configuration.literal) return std::make_unique<LiteralSeedModel>();
-      return std::make_unique<SeedModel>(configuration);
+      return std::make_unique<SeedModel>();
     }};
 
 }  // namespace mrhi

@@ -6,30 +6,16 @@
 #include "../collision/closest_features.h"
 #include "contact_step.h"
 #include "impact.h"
-#include "penetration_force.h"
+#include "penetration_model.h"
 
 namespace mrhi {
 namespace {
 
-/// A reduced stand-in for the soft hand of the paper's reference [20] (CLAP), without its deformable flesh.
-/// Around each contact point the skin has a grid of pads on springs, five along the phalanx and three across.
-/// Each pad has its own depth, along the normal of entry, and its own friction. The state is the contact's
-/// god object and twist about the normal, which shear the pads. So single pads slip without creep, and the
-/// grip slides once its deepest pad does. Explicit.
-class SoftPadModel : public ContactModel {
- public:
-  static constexpr int kAlong = 5, kAcross = 3;
-  /// Distance between pads, over the phalanx's radius.
-  static constexpr double kSpacing = 0.5;
-  /// Stiffness of all pads of a phalanx together, unless material/stiffness is set [N/m].
-  static constexpr double kStiffness = 500.0;
-  /// Damping of a pad over its stiffness [s].
-  static constexpr double kRelaxation = 0.01;
-
-  void respond(ContactStep& step) override;
-};
-
-constexpr int kPads = SoftPadModel::kAlong * SoftPadModel::kAcross;
+constexpr int kAlong = 5, kAcross = 3, kPads = kAlong * kAcross;
+/// Distance between pads, over the phalanx's radius.
+constexpr double kSpacing = 0.5;
+/// Damping of a pad over its stiffness [s].
+constexpr double kPadRelaxation = 0.01;
 /// Largest angle from the normal at which a phalanx has no direction along the surface [rad].
 constexpr double kMinTilt = 1e-6;
 
@@ -73,29 +59,6 @@ struct Skin {
   Vector3 along, across;
 };
 
-/// The object's surface under the pads.
-class Surface {
- public:
-  Surface(const Contact& contact, const PlacedShape& placed, const Pose& body)
-      : contact_(contact),
-        shape_(placed.shape),
-        pose_(body * placed.pose),
-        normal_(pose_.orientation.conjugate() * contact.normal) {}
-
-  /// Depth of a pad at `point`, along n, as all pads of a phalanx leave by the face of entry; 0 beside the
-  /// object. A mesh counts as flat around the contact point.
-  double depth(const Vector3& point) const {
-    if (std::holds_alternative<Mesh>(shape_)) return contact_.normal.dot(contact_.point - point);
-    return exit_distance(shape_, pose_.to_local(point), normal_).value_or(0.0);
-  }
-
- private:
-  const Contact& contact_;
-  const Shape& shape_;
-  Pose pose_;
-  Vector3 normal_;  // in the shape's frame
-};
-
 struct Pad {
   Vector3 offset;       // from the contact point, along the surface
   Vector3 surface;      // point of the object under the pad
@@ -108,7 +71,7 @@ class PadGrid {
   PadGrid(const Contact& contact, const Body& body, const BodyState& state, double step)
       : n_(contact.normal), material_(body.material), step_(step) {
     stiffness_ = material_.stiffness * contact.share / kPads;
-    damping_ = stiffness_ * SoftPadModel::kRelaxation;
+    damping_ = stiffness_ * kPadRelaxation;
     const Vector3 velocity = relative_velocity(contact, body, state);
     normal_velocity_ = n_.dot(velocity);
     slide_ = velocity - normal_velocity_ * n_;
@@ -123,21 +86,14 @@ class PadGrid {
   /// k_p is a pad's stiffness and l the distance between pads: a twist theta shears adjacent pads by l theta.
   /// The integration is explicit, so the stored values are bounded by what friction supports.
   void drag(const BodyState& state, Contact& contact) {
-    const Vector3 reach = contact.hand_point - contact.point;
-    stretch_ = reach - n_.dot(reach) * n_;
-    const Tangential deepest =
-        coulomb(stiffness_ * stretch_ + damping_ * slide_, hardest_, material_, contact.friction);
-    contact.friction = deepest.friction;
-    friction_ =
-        deepest.friction == Friction::sticking ? material_.static_friction : material_.dynamic_friction;
-    if (deepest.friction == Friction::slipping) {
-      const Vector3 kept = deepest.force / stiffness_;
-      contact.point += stretch_ - kept;
-      contact.god_object = state.pose.to_local(contact.point);
-      stretch_ = kept;
-    }
+    stretch_ = stretch_of(contact);
+    const Vector3 deepest =
+        tangential_force(material_, stiffness_, damping_ * slide_, hardest_, state, contact);
+    const bool sticks = contact.friction == Friction::sticking;
+    friction_ = sticks ? material_.static_friction : material_.dynamic_friction;
+    if (!sticks) stretch_ = deepest / stiffness_;
     // Beyond this twist the pads next to the centre slip too.
-    const double max_twist = friction_ * hardest_ / (stiffness_ * SoftPadModel::kSpacing * contact.radius);
+    const double max_twist = friction_ * hardest_ / (stiffness_ * kSpacing * contact.radius);
     contact.twist = std::clamp(contact.twist + step_ * spin_, -max_twist, max_twist);
     unturn_ = Eigen::AngleAxisd(-contact.twist, n_);
   }
@@ -152,7 +108,7 @@ class PadGrid {
   Vector3 act(bool fixed, BodyState& state) const {
     Vector3 sum = Vector3::Zero();
     for (int i = 0; i < count_; ++i) {
-      const Pad& pad = pads_[static_cast<std::size_t>(i)];
+      const Pad& pad = pads_[i];
       const Vector3 sheared = stretch_ + pad.offset - unturn_ * pad.offset;
       Vector3 force = stiffness_ * sheared + damping_ * (slide_ + spin_ * n_.cross(pad.offset));
       const double limit = friction_ * pad.normal_force, size = force.norm();
@@ -169,20 +125,28 @@ class PadGrid {
  private:
   void place(const Contact& contact, const Body& body, const BodyState& state) {
     const Skin skin(contact);
-    const Surface object(contact, body.shapes[contact.key.shape], state.pose);
-    const double spacing = SoftPadModel::kSpacing * contact.radius;
+    const PlacedShape& placed = body.shapes[contact.key.shape];
+    const Pose pose = state.pose * placed.pose;
+    const Vector3 normal = pose.orientation.conjugate() * contact.normal;
+    // Along n, as all pads of a phalanx leave by the face of entry; 0 beside the object. A mesh counts as
+    // flat around the contact point.
+    const auto depth_of = [&](const Vector3& point) {
+      if (std::holds_alternative<Mesh>(placed.shape)) return contact.normal.dot(contact.point - point);
+      return exit_distance(placed.shape, pose.to_local(point), normal).value_or(0.0);
+    };
+    const double spacing = kSpacing * contact.radius;
     for (int i = 0; i < kPads; ++i) {
-      const int along = i % SoftPadModel::kAlong - SoftPadModel::kAlong / 2;
-      const int across = i / SoftPadModel::kAlong - SoftPadModel::kAcross / 2;
+      const int along = i % kAlong - kAlong / 2;
+      const int across = i / kAlong - kAcross / 2;
       const double x = spacing * along, y = spacing * across;
       const std::optional<double> sag = skin.sag(x, y);
       if (!sag) continue;
       const Vector3 offset = x * skin.along + y * skin.across;
       const Vector3 point = contact.hand_point + offset + *sag * n_;
-      const double depth = object.depth(point);
+      const double depth = depth_of(point);
       if (depth <= 0.0) continue;
       const double normal_force = std::max(0.0, stiffness_ * depth - damping_ * normal_velocity_);
-      pads_[static_cast<std::size_t>(count_++)] = {offset, point + depth * n_, normal_force};
+      pads_[count_++] = {offset, point + depth * n_, normal_force};
       hardest_ = std::max(hardest_, normal_force);
     }
   }
@@ -202,29 +166,34 @@ class PadGrid {
   int count_ = 0;
 };
 
+/// A reduced stand-in for the soft hand of the paper's reference [20] (CLAP), without its deformable flesh.
+/// Around each contact point the skin has a grid of pads on springs, five along the phalanx and three across.
+/// Each pad has its own depth, along the normal of entry, and its own friction. The state is the contact's
+/// god object and twist about the normal, which shear the pads. So single pads slip without creep, and the
+/// grip slides once its deepest pad does. Explicit.
+class SoftPadModel : public ContactModel {
+ public:
+  // All pads of a body use its state at the start of the step (`before`), so their order has no effect.
+  void respond(ContactStep& step) override {
+    BodyState before;
+    std::size_t current = step.bodies.size();
+    for (Contact& contact : step.contacts) {
+      contact.force.setZero();
+      const std::size_t index = contact.key.body;
+      const Body& body = step.scene.bodies[index];
+      if (index != current) before = step.bodies[current = index];
+      if (!contact.touching() || body.material.stiffness * contact.share <= 0.0) continue;
+      PadGrid pads(contact, body, before, step.step);
+      if (!pads.presses()) continue;
+      pads.drag(before, contact);
+      contact.force = pads.act(body.fixed, step.bodies[index]);
+    }
+  }
+};
+
 }  // namespace
 
-// All pads of a body use its state at the start of the step (`before`), so their order has no effect.
-void SoftPadModel::respond(ContactStep& step) {
-  BodyState before;
-  std::size_t current = step.bodies.size();
-  for (Contact& contact : step.contacts) {
-    contact.force.setZero();
-    const std::size_t index = contact.key.body;
-    const Body& body = step.scene.bodies[index];
-    if (index != current) before = step.bodies[current = index];
-    if (!contact.touching() || body.material.stiffness * contact.share <= 0.0) continue;
-    PadGrid pads(contact, body, before, step.step);
-    if (!pads.presses()) continue;
-    pads.drag(before, contact);
-    contact.force = pads.act(body.fixed, step.bodies[index]);
-  }
-}
-
-extern const ContactModelEntry soft_pad_model{
-    "soft_pad", 5, SoftPadModel::kStiffness,
-    [](const ContactConfiguration&) -> std::unique_ptr<ContactModel> {
-      return std::make_unique<SoftPadModel>();
-    }};
+/// The default stiffness is that of all pads of a phalanx together.
+extern const ContactModelEntry soft_pad_model{"soft_pad", 5, 500.0, make_model<SoftPadModel>};
 
 }  // namespace mrhi

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "penetration_force.h"
+#include "penetration_model.h"
 
 namespace mrhi {
 namespace {
@@ -131,8 +131,8 @@ double look_ahead(double step, bool damping) {
 // The share scales the stiffness, so that N = k share d sums to the phalanx's load, and the strength.
 // Friction and patch belong to the single point. Friction is that of the previous state, mu or phi: settle()
 // finds the new one.
-void make_spring(const ContactStep& step, const ContactConfiguration& configuration, const Contact& contact,
-                 SpringContact& result) {
+void make_spring(const ContactStep& step, const Contact& contact, SpringContact& result) {
+  const ContactConfiguration& configuration = step.configuration;
   const Body& body = step.scene.bodies[contact.key.body];
   const Triple n = triple(contact.normal), point = triple(contact.point);
   const Triple reach = triple(contact.hand_point) - point + triple(contact.lever);
@@ -164,8 +164,8 @@ void make_spring(const ContactStep& step, const ContactConfiguration& configurat
 // The stretch is that of the anchors; no state is kept along n. No pad and no torsion: the points of a
 // manifold share the load, and resist twist together. Body a moves too: its velocity is the solver's, not
 // `drive`.
-void make_spring(const ContactStep& step, const ContactConfiguration& configuration,
-                 const BodyContact& contact, SpringContact& result) {
+void make_spring(const ContactStep& step, const BodyContact& contact, SpringContact& result) {
+  const ContactConfiguration& configuration = step.configuration;
   Spring& spring = result.spring;
   spring.normal = triple(contact.normal);
   spring.stretch = triple(contact.stretch);
@@ -271,19 +271,17 @@ double potential(const Spring& spring, const Triple& u, double spin) {
 //
 // Depth and fade are 0, so N is 0. The four points are corners of a tetrahedron: by forces alone they support
 // torques about any axis.
-void make_grip_spring(const ContactStep& step, const ContactConfiguration& configuration, const Grip& grip,
-                      int point, SpringContact& result) {
-  const auto i = static_cast<std::size_t>(point);
+void make_grip_spring(const ContactStep& step, const Grip& grip, int point, SpringContact& result) {
   const Pose& pose = step.bodies[grip.body].pose;
-  const Vector3 on_body = pose * grip.in_body[i];
+  const Vector3 on_body = pose * grip.in_body[point];
   result = SpringContact();
-  result.spring.stretch = triple(grip.point[i] - on_body);
-  result.spring.ahead = look_ahead(step.step, configuration.damping);
+  result.spring.stretch = triple(grip.point[point] - on_body);
+  result.spring.ahead = look_ahead(step.step, step.configuration.damping);
   result.spring.stiffness = grip.stiffness;
   result.spring.yields = HandStrength::kUnlimited;
   result.spring.bond = grip.bond;
   result.arm = triple(on_body - pose.position);
-  result.drive = triple(grip.velocity[i]);
+  result.drive = triple(grip.velocity[point]);
 }
 
 namespace {
@@ -307,14 +305,13 @@ void settle_grip(const ContactStep& step, const SpringContact& solved, int point
   const double followed = step.step / spring.ahead;
   const Vector3 yielded = followed * (vector(response.drawn) - force / spring.stiffness);
   const Pose& pose = step.bodies[grip.body].pose;
-  Vector3& end = grip.in_body[static_cast<std::size_t>(point)];
+  Vector3& end = grip.in_body[point];
   end = pose.to_local(pose * end + yielded);
 }
 
 }  // namespace
 
-void make_hand_rows(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
-                    std::vector<SpringContact>& rows) {
+void make_hand_rows(const ContactStep& step, const Island& island, std::vector<SpringContact>& rows) {
   std::size_t count = 0;
   for (const IslandBody& body : island.bodies) count += body.last - body.first;
   for (const Grip& grip : step.grips) count += grip.active ? kGripPoints : 0;
@@ -325,7 +322,7 @@ void make_hand_rows(const ContactStep& step, const Island& island, const Contact
     for (std::size_t i = body.first; i < body.last; ++i) {
       if (step.contacts[i].ignored) continue;
       row->a = SpringContact::kNone, row->b = number;
-      make_spring(step, configuration, step.contacts[i], *row++);
+      make_spring(step, step.contacts[i], *row++);
     }
     ++number;
   }
@@ -333,18 +330,18 @@ void make_hand_rows(const ContactStep& step, const Island& island, const Contact
     const int body = grip.active ? island.place_of(grip.body) : SpringContact::kNone;
     if (body < 0) continue;
     for (int point = 0; point < kGripPoints; ++point, ++row) {
-      make_grip_spring(step, configuration, grip, point, *row);
+      make_grip_spring(step, grip, point, *row);
       row->a = SpringContact::kNone, row->b = body;
     }
   }
-  rows.resize(static_cast<std::size_t>(row - rows.data()));
+  rows.resize(row - rows.data());
 }
 
-void make_link_row(const ContactStep& step, const Island& island, const ContactConfiguration& configuration,
-                   const BodyContact& contact, SpringContact& row) {
+void make_link_row(const ContactStep& step, const Island& island, const BodyContact& contact,
+                   SpringContact& row) {
   row.a = step.scene.bodies[contact.key.a].fixed ? SpringContact::kNone : island.place_of(contact.key.a);
   row.b = island.place_of(contact.key.b);
-  make_spring(step, configuration, contact, row);
+  make_spring(step, contact, row);
 }
 
 const SpringContact* settle_hand_rows(ContactStep& step, const Island& island, const SpringContact* row) {

@@ -3,31 +3,13 @@
 
 #include "contact_step.h"
 #include "impact.h"
-#include "penetration_force.h"
+#include "penetration_model.h"
 
 namespace mrhi {
 namespace {
 
-/// A virtual phalanx coupled to the tracked one by a spring and a damper (Borst & Indugula, "A spring model
-/// for whole-hand virtual grasping", Presence 15(1), 2006; the paper's reference [23], Delrieu et al. 2020).
-/// Those systems give the virtual phalanx a small mass and let an engine keep it outside the object. Here it
-/// is reduced to its point on the surface (the god object), without mass. The coupling's force acts on the
-/// object up to Coulomb's limit, beyond which the point slides. Explicit, as those systems are: forces are
-/// those at the start of the step.
-class VirtualSpringModel : public ContactModel {
- public:
-  /// Stiffness of the coupling, unless material/stiffness is set [N/m]. An explicit spring and damper need
-  /// steps below 2 / sqrt(sum k / m) and 2 m / sum b.
-  ///
-  /// These are the bounds of each alone. For N phalanges both together need h^2 N k + 2 h N b < 4 m: up to
-  /// there p += -h (k x + b p / m), x += h p / m has its roots within the unit circle
-  /// (docs/speed_accuracy.md: of 2433 cells beyond it 12 are stable).
-  static constexpr double kStiffness = 500.0;
-  /// Mass of a virtual phalanx for which the damper is critical: b = 2 sqrt(k m), 4.5 N s/m at 500 N/m [kg].
-  static constexpr double kPhalanxMass = 0.01;
-
-  void respond(ContactStep& step) override;
-};
+/// Mass of a virtual phalanx for which the damper is critical: b = 2 sqrt(k m), 4.5 N s/m at 500 N/m [kg].
+constexpr double kPhalanxMass = 0.01;
 
 /// Force of the coupling on the object [N]; moves the virtual phalanx where it slips.
 ///
@@ -39,46 +21,46 @@ class VirtualSpringModel : public ContactModel {
 Vector3 coupling_force(const Body& body, const BodyState& state, Contact& contact) {
   const double stiffness = body.material.stiffness * contact.share;
   if (!contact.touching() || stiffness <= 0.0) return Vector3::Zero();
-  const double damping =
-      2.0 * std::sqrt(body.material.stiffness * VirtualSpringModel::kPhalanxMass) * contact.share;
+  const double damping = 2.0 * std::sqrt(body.material.stiffness * kPhalanxMass) * contact.share;
   const Vector3& n = contact.normal;
   const Vector3 velocity = relative_velocity(contact, body, state);
   const double normal_velocity = n.dot(velocity);
   // The virtual phalanx rests on the surface: the coupling may push it on, but the surface cannot pull it
   // back.
   const double load = std::max(0.0, stiffness * contact.depth - damping * normal_velocity);
-
-  const Vector3 reach = contact.hand_point - contact.point;
-  const Vector3 stretch = reach - n.dot(reach) * n;
   const Vector3 along = velocity - normal_velocity * n;
-  const Tangential tangential =
-      coulomb(stiffness * stretch + damping * along, load, body.material, contact.friction);
-  contact.friction = tangential.friction;
-  if (tangential.friction == Friction::slipping) {
-    contact.point += stretch - tangential.force / stiffness;
-    contact.god_object = state.pose.to_local(contact.point);
-  }
-  return tangential.force - load * n;
+  return tangential_force(body.material, stiffness, damping * along, load, state, contact) - load * n;
 }
+
+/// A virtual phalanx coupled to the tracked one by a spring and a damper (Borst & Indugula, "A spring model
+/// for whole-hand virtual grasping", Presence 15(1), 2006; the paper's reference [23], Delrieu et al. 2020).
+/// Those systems give the virtual phalanx a small mass and let an engine keep it outside the object. Here it
+/// is reduced to its point on the surface (the god object), without mass. The coupling's force acts on the
+/// object up to Coulomb's limit, beyond which the point slides. Explicit, as those systems are: forces are
+/// those at the start of the step.
+class VirtualSpringModel : public ContactModel {
+ public:
+  void respond(ContactStep& step) override {
+    for (Contact& contact : step.contacts) {
+      const std::size_t body = contact.key.body;
+      contact.force = coupling_force(step.scene.bodies[body], step.bodies[body], contact);
+    }
+    for (const Contact& contact : step.contacts) {
+      const std::size_t body = contact.key.body;
+      if (!step.scene.bodies[body].fixed)
+        apply_impulse(step.step * contact.force, contact.point, step.bodies[body]);
+    }
+  }
+};
 
 }  // namespace
 
-void VirtualSpringModel::respond(ContactStep& step) {
-  for (Contact& contact : step.contacts) {
-    const std::size_t body = contact.key.body;
-    contact.force = coupling_force(step.scene.bodies[body], step.bodies[body], contact);
-  }
-  for (const Contact& contact : step.contacts) {
-    const std::size_t body = contact.key.body;
-    if (!step.scene.bodies[body].fixed)
-      apply_impulse(step.step * contact.force, contact.point, step.bodies[body]);
-  }
-}
-
-extern const ContactModelEntry virtual_spring_model{
-    "virtual_spring", 4, VirtualSpringModel::kStiffness,
-    [](const ContactConfiguration&) -> std::unique_ptr<ContactModel> {
-      return std::make_unique<VirtualSpringModel>();
-    }};
+/// An explicit spring and damper need steps below 2 / sqrt(sum k / m) and 2 m / sum b.
+///
+/// These are the bounds of each alone. For N phalanges both together need h^2 N k + 2 h N b < 4 m: up to
+/// there p += -h (k x + b p / m), x += h p / m has its roots within the unit circle
+/// (docs/speed_accuracy.md: of 2433 cells beyond it 12 are stable).
+extern const ContactModelEntry virtual_spring_model{"virtual_spring", 4, 500.0,
+                                                    make_model<VirtualSpringModel>};
 
 }  // namespace mrhi

@@ -1,13 +1,11 @@
 #include "mr_hand_interaction/ros/hand_tracking.h"
 
 #include <mr_hand_interaction/HandFrame.h>
-#include <ros/callback_queue_interface.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <boost/make_shared.hpp>
-#include <deque>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -75,71 +73,42 @@ struct Parameters {
 
 }  // namespace
 
-/// Runs callbacks at once, in the thread in which their messages arrive.
-class ImmediateQueue : public ros::CallbackQueueInterface {
- public:
-  void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t /*owner*/) override {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    callback->call();
-  }
-  void removeByID(std::uint64_t /*owner*/) override {}
-
- private:
-  std::mutex mutex_;
-};
-
-/// A TransformMemory of /tf and /tf_static. Messages of /tf wait until they are needed: this node itself
-/// sends one for each frame, which must not wake the thread that waits for hands.
+/// A TransformMemory of /tf and /tf_static. Messages of /tf wait in a queue of their own until they are
+/// needed: this node itself sends one for each frame, which must not wake the thread that waits for hands.
 class TrackerTransforms : public TransformMemory {
  public:
   static constexpr const char* kReason = "unusable transform";
 
   TrackerTransforms(ros::NodeHandle node, InputStatistics& statistics) : statistics_(statistics) {
-    constexpr std::uint32_t kTransformQueue = 100;
-    ros::SubscribeOptions moving;
-    moving.initByFullCallbackType<const Arrival&>("/tf", kTransformQueue,
-                                                  [this](const Arrival& arrival) { note(arrival); });
-    moving.callback_queue = &at_once_;
-    moving_ = node.subscribe(moving);
-    const auto take_fixed = [this](const Arrival& arrival) {
-      for (const auto& transform : arrival.getConstMessage()->transforms) set_fixed(transform);
-    };
-    fixed_ = node.subscribe<tf2_msgs::TFMessage>("/tf_static", kTransformQueue,
-                                                 boost::function<void(const Arrival&)>(take_fixed));
+    constexpr std::uint32_t kMaxFixed = 100, kMaxWaiting = 1000;  // a second of messages, the longest wait
+    using Take = boost::function<void(const Arrival&)>;
+    ros::NodeHandle later(node);
+    later.setCallbackQueue(&waiting_);
+    moving_ = later.subscribe<tf2_msgs::TFMessage>("/tf", kMaxWaiting,
+                                                   Take([this](const Arrival& arrival) { take(arrival); }));
+    fixed_ = node.subscribe<tf2_msgs::TFMessage>(
+        "/tf_static", kMaxFixed, Take([this](const Arrival& arrival) {
+          for (const auto& transform : arrival.getConstMessage()->transforms) set_fixed(transform);
+        }));
   }
 
   /// Takes the messages that wait.
-  void take_waiting() {
-    std::deque<Arrival> arrivals;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      arrivals.swap(waiting_);
-    }
-    for (const Arrival& arrival : arrivals) {
-      for (const auto& transform : arrival.getConstMessage()->transforms) {
-        const std::string why = set(transform, from_ros_time(arrival.getReceiptTime()));
-        if (!why.empty()) statistics_.rejected(kReason, why);
-      }
-    }
-  }
+  void take_waiting() { waiting_.callAvailable(); }
 
  private:
   using Arrival = ros::MessageEvent<const tf2_msgs::TFMessage>;
-  /// Messages of a second, the longest that any waits; of more, the oldest are lost.
-  static constexpr std::size_t kMaxWaiting = 1000;
 
   /// This node's own transforms are of objects, which carry no tracker.
-  void note(const Arrival& arrival) {
+  void take(const Arrival& arrival) {
     if (arrival.getPublisherName() == ros::this_node::getName()) return;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    waiting_.push_back(arrival);
-    if (waiting_.size() > kMaxWaiting) waiting_.pop_front();
+    for (const auto& transform : arrival.getConstMessage()->transforms) {
+      const std::string why = set(transform, from_ros_time(arrival.getReceiptTime()));
+      if (!why.empty()) statistics_.rejected(kReason, why);
+    }
   }
 
   InputStatistics& statistics_;
-  ImmediateQueue at_once_;
-  std::mutex mutex_;
-  std::deque<Arrival> waiting_;
+  ros::CallbackQueue waiting_;
   ros::Subscriber moving_, fixed_;
 };
 

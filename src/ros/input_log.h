@@ -21,15 +21,15 @@ class StampClock {
  public:
   /// Notes the arrival of a frame with this stamp.
   void take(Nanoseconds stamp, const ros::Time& now) {
-    started_ = true;
-    last_stamp_ = stamp;
+    last_.started = true;
+    last_.last = stamp;
     arrival_ = now;
   }
 
   /// Stamp of a frame sent now; now itself before the first frame. Never decreases, even if ROS time does.
   Nanoseconds stamp(const ros::Time& now) const {
-    if (!started_) return from_ros_time(now);
-    return last_stamp_ + std::max<Nanoseconds>(0, from_ros_time(now) - from_ros_time(arrival_));
+    if (!last_.started) return from_ros_time(now);
+    return last_.last + std::max<Nanoseconds>(0, from_ros_time(now) - from_ros_time(arrival_));
   }
 
   void pause(const ros::Time& now) {
@@ -47,19 +47,13 @@ class StampClock {
 
   bool paused() const { return paused_; }
   /// Check of frames that continue from the last accepted one.
-  StampCheck check() const {
-    StampCheck check;
-    check.started = started_;
-    check.last = last_stamp_;
-    return check;
-  }
+  const StampCheck& check() const { return last_; }
 
   Nanoseconds to_simulation(Nanoseconds stamp) const { return stamp - pauses_; }
   Nanoseconds to_stamp(Nanoseconds simulation_time) const { return simulation_time + pauses_; }
 
  private:
-  bool started_ = false;
-  Nanoseconds last_stamp_ = 0;
+  StampCheck last_;  // of the last frame
   ros::Time arrival_;
   bool paused_ = false;
   Nanoseconds pause_begin_ = 0;
@@ -120,33 +114,25 @@ class InputLog {
 
   /// `hands`, `expected`: as for Simulation::begin(). `frame_id`: frame of the hands.
   void frame(HandFrame hands, const std::string& frame_id, Nanoseconds expected) {
-    ++sequence_;
-    if (!heard()) return;
-    SimulationInput input = message(SimulationInput::FRAME);
-    input.time = hands.stamp;
-    input.expected = expected;
-    hands.stamp = clock_.to_stamp(hands.stamp);
-    input.hands = to_message(hands, frame_id);
-    input.header.stamp = input.hands.header.stamp;
-    publisher_.publish(input);
+    publish(SimulationInput::FRAME, [&](SimulationInput& input) {
+      input.time = hands.stamp;
+      input.expected = expected;
+      hands.stamp = clock_.to_stamp(hands.stamp);
+      input.hands = to_message(hands, frame_id);
+      input.header.stamp = input.hands.header.stamp;
+    });
   }
 
   void without_hands(Nanoseconds time) {
-    ++sequence_;
-    if (!heard()) return;
-    SimulationInput input = message(SimulationInput::SILENCE);
-    input.time = time;
-    publisher_.publish(input);
+    publish(SimulationInput::SILENCE, [&](SimulationInput& input) { input.time = time; });
   }
 
   void change(const Change& change) {
-    ++sequence_;
     note(change, simulation_, world_);
-    if (!heard()) return;
-    SimulationInput input = message(SimulationInput::CHANGE);
-    input.text = to_yaml(change);
-    add(files_of(change), input);
-    publisher_.publish(input);
+    publish(SimulationInput::CHANGE, [&](SimulationInput& input) {
+      input.text = to_yaml(change);
+      add(files_of(change), input);
+    });
   }
 
   void lost(std::uint64_t frames) { lost_ = frames; }
@@ -176,7 +162,16 @@ class InputLog {
     subscriber.publish(input);
   }
 
-  mr_hand_interaction::SimulationInput message(std::uint8_t kind) const {
+  template <class Fill>
+  void publish(std::uint8_t kind, const Fill& fill) {
+    ++sequence_;
+    if (publisher_.getNumSubscribers() == 0) return;
+    SimulationInput input = message(kind);
+    fill(input);
+    publisher_.publish(input);
+  }
+
+  SimulationInput message(std::uint8_t kind) const {
     const SimulationState& state = simulation_.simulation().state();
     SimulationInput input;
     input.kind = kind;
@@ -187,8 +182,6 @@ class InputLog {
     input.lost_by_queue = lost_;
     return input;
   }
-
-  bool heard() const { return publisher_.getNumSubscribers() > 0; }
 
   World world_;
   const LiveSimulation& simulation_;

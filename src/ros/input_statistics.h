@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
@@ -52,11 +53,11 @@ class InputStatistics {
     if (++corrected_[kind] == 1) ROS_INFO_STREAM(kind << ": " << detail << " (more are counted only)");
   }
   /// Counts frames that were sent and have not arrived.
-  void lost(std::uint64_t frames) { lost_ += frames; }
-  std::uint64_t lost() const { return lost_; }
+  void lost(std::uint64_t frames) { lost_.count += frames; }
+  std::uint64_t lost() const { return lost_.count; }
   /// Notes the time from a frame's arrival to the end of its processing [s].
   void waited(double seconds) {
-    if (seconds > kLate) ++late_;
+    if (seconds > kLate) ++late_.count;
   }
   /// Counts since the start; rate and latency since the last report.
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -69,20 +70,17 @@ class InputStatistics {
     status.add("rate [Hz]", frames / std::max(period.toSec(), 1e-3));
     status.add("latency mean [ms]", taken_in_period_ > 0 ? 1e3 * latency_sum_ / frames : 0.0);
     status.add("latency max [ms]", 1e3 * latency_max_);
-    status.add("frames lost by queue", lost_);
-    status.add("frames late by more than 50 ms", late_);
-    if (lost_ > lost_reported_)
-      status.mergeSummary(DiagnosticStatus::WARN, std::to_string(lost_) + " frames have not arrived");
-    if (late_ > late_reported_)
-      status.mergeSummary(DiagnosticStatus::WARN,
-                          std::to_string(late_) + " frames were late by more than 50 ms");
-    lost_reported_ = lost_;
-    late_reported_ = late_;
+    status.add("frames lost by queue", lost_.count);
+    status.add("frames late by more than 50 ms", late_.count);
+    const auto warn_if_grown = [&](Count& count, const std::string& text) {
+      if (std::exchange(count.reported, count.count) < count.count)
+        status.mergeSummary(DiagnosticStatus::WARN, text);
+    };
+    warn_if_grown(lost_, std::to_string(lost_.count) + " frames have not arrived");
+    warn_if_grown(late_, std::to_string(late_.count) + " frames were late by more than 50 ms");
     for (auto& [reason, refusals] : rejected_) {
       status.add("rejected: " + reason, refusals.count);
-      if (refusals.count > refusals.reported)
-        status.mergeSummary(DiagnosticStatus::WARN, reason + ": " + refusals.last);
-      refusals.reported = refusals.count;
+      warn_if_grown(refusals, reason + ": " + refusals.last);
     }
     for (const auto& [kind, count] : corrected_) status.add(kind, count);
     period_start_ = now;
@@ -94,17 +92,17 @@ class InputStatistics {
   static constexpr double kLate = 0.05;  // processing times beyond this are late [s]
   static constexpr double kShortestSilence = 5.0, kLongestSilence = 60.0;  // between two lines of a kind [s]
 
-  struct Refusals {
-    std::uint64_t count = 0;
-    std::uint64_t reported = 0;
+  struct Count {
+    std::uint64_t count = 0, reported = 0;  ///< now, and at the last report
+  };
+  struct Refusals : Count {
     std::string last;
     ros::SteadyTime logged;
     double silence = kShortestSilence;  ///< until the next line [s]
   };
 
   std::uint64_t taken_ = 0;
-  std::uint64_t lost_ = 0, late_ = 0;
-  std::uint64_t lost_reported_ = 0, late_reported_ = 0;
+  Count lost_, late_;
   std::map<std::string, Refusals> rejected_;
   std::map<std::string, std::uint64_t> corrected_;
   std::uint64_t taken_in_period_ = 0;

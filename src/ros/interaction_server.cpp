@@ -11,7 +11,6 @@
 
 #include <chrono>
 #include <cinttypes>
-#include <cstdio>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -104,7 +103,8 @@ struct InteractionServer::Impl {
         tuning_(private_node, parameters.place_by_mouse,
                 {[this](const Tuning::Values& values) { change_parameters(values); },
                  [this](bool on) { placing_.turn(on, live_.simulation()); },
-                 [this]() -> const Simulation& { return live_.simulation(); }}),
+                 [this]() -> const Simulation& { return live_.simulation(); },
+                 [this](const auto& task) { between_frames_.run_beside(task); }}),
         between_frames_(node) {
     // Separate: all values of the other status are numbers, and a hash is not.
     diagnostics_.add("state", [this](auto& status) { report_state(status); });
@@ -274,9 +274,7 @@ struct InteractionServer::Impl {
 
   void report_state(diagnostic_updater::DiagnosticStatusWrapper& status) const {
     status.summary(diagnostic_msgs::DiagnosticStatus::OK, "as of the last input");
-    char text[20];
-    std::snprintf(text, sizeof text, "%016" PRIx64, hash(live_.simulation().state()));
-    status.add("state hash", text);
+    status.add("state hash", text::format("%016" PRIx64, hash(live_.simulation().state())));
     status.add("state stamp [ns]", clock_.to_stamp(live_.simulation().state().time));
     status.add("simulation input", log_.sequence());
   }

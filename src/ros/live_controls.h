@@ -9,7 +9,6 @@
 #include <boost/make_shared.hpp>
 
 #include <algorithm>
-#include <condition_variable>
 #include <cstdlib>
 #include <exception>
 #include <functional>
@@ -20,7 +19,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -30,6 +28,7 @@
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/simulation.h"
+#include "network_thread.h"
 
 namespace mrhi {
 /// Runs long service calls in their own thread, concurrently with frames. Such a call passes its changes of
@@ -59,14 +58,20 @@ class BetweenFrames {
   }
 
   void start() { spinner_.start(); }
+  /// Calls `task` in the separate thread, later.
+  void run_beside(const std::function<void()>& task) {
+    beside_.addCallback(boost::make_shared<QueuedTask>(task));
+  }
   /// Blocks until `task` is done. Rethrows its exception; throws std::runtime_error if the node ends before.
   void run(const std::function<void()>& task) {
     std::future<void> done;
     {
-      const auto job = boost::make_shared<Job>(task);
-      done = job->done();
+      const auto job =
+          std::make_shared<std::packaged_task<void()>>(task);  // a dropped one breaks its promise
+      done = job->get_future();
       const std::lock_guard<std::mutex> lock(ending_mutex_);
-      if (!ends_) node_.getCallbackQueue()->addCallback(job, id());
+      if (!ends_)
+        node_.getCallbackQueue()->addCallback(boost::make_shared<QueuedTask>([job] { (*job)(); }), id());
     }
     try {
       done.get();
@@ -76,21 +81,6 @@ class BetweenFrames {
   }
 
  private:
-  /// A task in the node's callback queue. A dropped one breaks its promise.
-  class Job : public ros::CallbackInterface {
-   public:
-    explicit Job(const std::function<void()>& task) : task_(task) {}
-    CallResult call() override {
-      task_();
-      return Success;
-    }
-
-    std::future<void> done() { return task_.get_future(); }
-
-   private:
-    std::packaged_task<void()> task_;
-  };
-
   std::uint64_t id() const { return reinterpret_cast<std::uintptr_t>(this); }
 
   ros::NodeHandle node_;
@@ -121,25 +111,18 @@ class Placing {
   void renew(const Simulation& simulation) {
     if (!server_) return;
     server_->clear();
-    for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
-      const Body& body = simulation.scene().bodies[b];
-      if (body.fixed || body.is_operator) continue;
-      server_->insert(
-          marker_of(body, simulation.state().bodies[b].pose, fixed_frame_),
-          [this](const visualization_msgs::InteractiveMarkerFeedbackConstPtr& feedback) { take(*feedback); });
-    }
-    server_->applyChanges();
+    each_movable(simulation, [this](const Body& body, const Pose& pose) {
+      server_->insert(marker_of(body, pose, fixed_frame_),
+                      [this](const Feedback::ConstPtr& feedback) { take(*feedback); });
+    });
   }
 
   /// Moves the markers to their bodies.
   void follow(const Simulation& simulation) {
     if (!server_) return;
-    for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
-      const Body& body = simulation.scene().bodies[b];
-      if (!body.fixed && !body.is_operator)
-        server_->setPose(body.name, to_message(simulation.state().bodies[b].pose));
-    }
-    server_->applyChanges();
+    each_movable(simulation, [this](const Body& body, const Pose& pose) {
+      server_->setPose(body.name, to_message(pose));
+    });
   }
 
   /// Poses at which the mouse holds objects. Excludes objects that were released, or without feedback for
@@ -169,13 +152,13 @@ class Placing {
   static constexpr double kSilence = 1.0;  // [s]
   static constexpr double kRoom = 2.6;     // size of the handles, over the body's radius
 
-  static InteractiveMarkerControl control(const char* name, const Vector3& axis, std::uint8_t mode) {
-    InteractiveMarkerControl control;
-    const Quaternion turn = rotation_between(Vector3::UnitX(), axis);
-    control.name = name;
-    control.interaction_mode = mode;
-    control.orientation = to_message(Pose{Vector3::Zero(), turn}).orientation;
-    return control;
+  template <class Use>
+  void each_movable(const Simulation& simulation, const Use& use) {
+    for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
+      const Body& body = simulation.scene().bodies[b];
+      if (!body.fixed && !body.is_operator) use(body, simulation.state().bodies[b].pose);
+    }
+    server_->applyChanges();
   }
 
   /// Arrows and rings along and about the body's axes.
@@ -185,15 +168,15 @@ class Placing {
     marker.name = body.name;
     marker.scale = static_cast<float>(kRoom * body.bounding_radius);
     marker.pose = to_message(pose);
-    const struct {
-      const char *move, *turn;
-      Vector3 axis;
-    } axes[] = {{"move x", "turn x", Vector3::UnitX()},
-                {"move y", "turn y", Vector3::UnitY()},
-                {"move z", "turn z", Vector3::UnitZ()}};
-    for (const auto& a : axes) {
-      marker.controls.push_back(control(a.move, a.axis, InteractiveMarkerControl::MOVE_AXIS));
-      marker.controls.push_back(control(a.turn, a.axis, InteractiveMarkerControl::ROTATE_AXIS));
+    for (int axis = 0; axis < 3; ++axis) {
+      InteractiveMarkerControl control;
+      const Quaternion turn = rotation_between(Vector3::UnitX(), Vector3::Unit(axis));
+      control.orientation = to_message(Pose{Vector3::Zero(), turn}).orientation;
+      for (const bool turns : {false, true}) {
+        control.name = std::string(turns ? "turn " : "move ") + "xyz"[axis];
+        control.interaction_mode = turns ? control.ROTATE_AXIS : control.MOVE_AXIS;
+        marker.controls.push_back(control);
+      }
     }
     return marker;
   }
@@ -231,6 +214,7 @@ class Tuning {
     std::function<void(const Values&)> set;         ///< sets all or none; throws std::exception
     std::function<void(bool)> place_by_mouse;       ///< turns interactive markers on or off
     std::function<const Simulation&()> simulation;  ///< the present simulation
+    std::function<void(const std::function<void()>& task)> later;  ///< calls a task in another thread
   };
 
   Tuning(const ros::NodeHandle& private_node, bool place_by_mouse, Actions actions)
@@ -244,7 +228,6 @@ class Tuning {
     shown_ = current();
     server_.updateConfig(shown_);
     server_.setCallback([this](Config& requested, std::uint32_t) { take(requested); });
-    publisher_thread_ = std::thread([this] { publish_updates(); });
   }
 
   /// Ranges of the sliders of all numbers, from the parameters' table. Values beyond them are accepted within
@@ -257,27 +240,16 @@ class Tuning {
     max.__fromMessage__(high);
   }
 
-  ~Tuning() {
-    {
-      const std::lock_guard<std::mutex> lock(asking_);
-      ends_ = true;
-    }
-    wake_.notify_one();
-    publisher_thread_.join();
-  }
-
   /// Schedules publishing of the present values: each number is a call to the master, and frames do not wait
   /// for these.
   void show() {
     shown_ = current();
     const std::lock_guard<std::mutex> lock(asking_);
     to_tell_ = shown_;
-    wake_.notify_one();
+    actions_.later([this] { publish_update(); });
   }
 
  private:
-  static constexpr const char *kStiffness = "material/stiffness", *kNoise = "filter/noise";
-
   static dynamic_reconfigure::Config message_of(const Config& config) {
     dynamic_reconfigure::Config message;
     config.__toMessage__(message);
@@ -289,32 +261,38 @@ class Tuning {
     return parameter;
   }
 
-  /// Texts by parameter, for those in the dialog.
-  static std::map<std::string, std::string> parameter_texts(const Config& config) {
-    std::map<std::string, std::string> fields;
-    const dynamic_reconfigure::Config message = message_of(config);
-    for (const auto& field : message.ints) fields[field.name] = std::to_string(field.value);
-    for (const auto& field : message.doubles) fields[field.name] = text::exact(field.value);
-    for (const auto& field : message.strs) fields[field.name] = field.value;
-    std::map<std::string, std::string> texts;
-    for (const std::string& name : parameter_names()) {
-      const auto field = fields.find(field_of(name));
-      if (field != fields.end()) texts[name] = field->second;
-    }
-    return texts;
+  /// Calls `use` with each field of these three types.
+  template <class Message, class Use>
+  static void each_field(Message&& message, const Use& use) {
+    for (auto& field : message.ints) use(field);
+    for (auto& field : message.doubles) use(field);
+    for (auto& field : message.strs) use(field);
   }
 
-  /// A parameter that is a number or a word with a check box. Moving the number selects it, even if the word
-  /// was selected.
-  struct NumberOrWord {
-    std::string name, word, number;
-    bool moved, word_wanted, word_before;
+  static std::string text_of(int value) { return std::to_string(value); }
+  static std::string text_of(double value) { return text::exact(value); }
+  static std::string text_of(const std::string& value) { return value; }
+  static void set(const std::string& text, int& value) { value = std::atoi(text.c_str()); }
+  static void set(const std::string& text, double& value) { value = std::strtod(text.c_str(), nullptr); }
+  static void set(const std::string& text, std::string& value) { value = text; }
 
-    void add_to(Values& values) const {
-      if (moved || word_wanted != word_before)
-        values.emplace_back(name, word_wanted && !(moved && word_before) ? word : number);
-    }
-  };
+  static Vector3 gravity_of(const Config& config) {
+    return {config.gravity_x, config.gravity_y, config.gravity_z};
+  }
+
+  /// YAML of the parameters in the dialog. A check box selects a word instead of a number.
+  static std::map<std::string, std::string> texts_of(const Config& config) {
+    std::map<std::string, std::string> names, texts;
+    for (const std::string& name : parameter_names()) names[field_of(name)] = name;
+    each_field(message_of(config), [&](const auto& field) {
+      if (const auto known = names.find(field.name); known != names.end())
+        texts[known->second] = text_of(field.value);
+    });
+    texts["gravity"] = config.gravity_of_scene ? "scene" : text::exact(gravity_of(config));
+    if (config.stiffness_of_model) texts["material/stiffness"] = "model";
+    if (config.filter_noise_estimated) texts["filter/noise"] = "estimated";
+    return texts;
+  }
 
   /// Parameter of a number in the dialog: gravity has one for each axis.
   static std::string parameter_of(const std::string& field) {
@@ -351,16 +329,10 @@ class Tuning {
     const Simulation& simulation = actions_.simulation();
     const Configuration& configuration = simulation.configuration();
     dynamic_reconfigure::Config message = message_of(Config::__getDefault__());
-    for (const std::string& name : parameter_names()) {
-      const std::string field = field_of(name);
-      const std::string text = parameter_text(configuration, name);
-      for (auto& entry : message.ints)
-        if (entry.name == field) entry.value = std::atoi(text.c_str());
-      for (auto& entry : message.doubles)
-        if (entry.name == field) entry.value = std::strtod(text.c_str(), nullptr);
-      for (auto& entry : message.strs)
-        if (entry.name == field) entry.value = text;
-    }
+    for (const std::string& name : parameter_names())
+      each_field(message, [&](auto& field) {
+        if (field.name == field_of(name)) set(parameter_text(configuration, name), field.value);
+      });
     Config config;
     config.__fromMessage__(message);
     const Vector3 gravity = configuration.gravity.value_or(simulation.scene().gravity);
@@ -374,41 +346,30 @@ class Tuning {
     return config;
   }
 
-  Values changes(const Config& requested) const {
+  /// Moving a number selects it, even if its word was selected.
+  Values changes(Config requested) const {
+    const auto deselect = [](bool& word, bool before, bool moved) { word = word && !(before && moved); };
+    deselect(requested.gravity_of_scene, shown_.gravity_of_scene,
+             gravity_of(requested) != gravity_of(shown_));
+    deselect(requested.stiffness_of_model, shown_.stiffness_of_model,
+             requested.material_stiffness != shown_.material_stiffness);
+    deselect(requested.filter_noise_estimated, shown_.filter_noise_estimated,
+             requested.filter_noise != shown_.filter_noise);
     Values values;
-    const auto before = parameter_texts(shown_);
-    for (const auto& [name, text] : parameter_texts(requested)) {
-      if (name != kStiffness && name != kNoise && text != before.at(name)) values.emplace_back(name, text);
-    }
-    const Vector3 gravity(requested.gravity_x, requested.gravity_y, requested.gravity_z);
-    const bool pulls_elsewhere = gravity != Vector3(shown_.gravity_x, shown_.gravity_y, shown_.gravity_z);
-    const std::vector<NumberOrWord> others{{"gravity", "scene", text::exact(gravity), pulls_elsewhere,
-                                            requested.gravity_of_scene, shown_.gravity_of_scene},
-                                           {kStiffness, "model", text::exact(requested.material_stiffness),
-                                            requested.material_stiffness != shown_.material_stiffness,
-                                            requested.stiffness_of_model, shown_.stiffness_of_model},
-                                           {kNoise, "estimated", text::exact(requested.filter_noise),
-                                            requested.filter_noise != shown_.filter_noise,
-                                            requested.filter_noise_estimated, shown_.filter_noise_estimated}};
-    for (const NumberOrWord& other : others) other.add_to(values);
+    const auto before = texts_of(shown_);
+    for (const auto& [name, text] : texts_of(requested))
+      if (text != before.at(name)) values.emplace_back(name, text);
     return values;
   }
 
   /// Locks the server's mutex first: its callback may have changed values that are newer than those to
   /// publish.
-  void publish_updates() {
-    while (true) {
-      {
-        std::unique_lock<std::mutex> lock(asking_);
-        wake_.wait(lock, [this] { return to_tell_ || ends_; });
-        if (ends_) return;
-      }
-      const boost::recursive_mutex::scoped_lock server(mutex_);
-      std::unique_lock<std::mutex> lock(asking_);
-      const std::optional<Config> config = std::exchange(to_tell_, std::nullopt);
-      lock.unlock();
-      if (config) server_.updateConfig(*config);
-    }
+  void publish_update() {
+    const boost::recursive_mutex::scoped_lock server(mutex_);
+    std::unique_lock<std::mutex> lock(asking_);
+    const std::optional<Config> config = std::exchange(to_tell_, std::nullopt);
+    lock.unlock();
+    if (config) server_.updateConfig(*config);
   }
 
   Actions actions_;
@@ -418,10 +379,7 @@ class Tuning {
   dynamic_reconfigure::Server<Config> server_;
 
   std::mutex asking_;
-  std::condition_variable wake_;
   std::optional<Config> to_tell_;
-  bool ends_ = false;
-  std::thread publisher_thread_;
 };
 
 }  // namespace mrhi

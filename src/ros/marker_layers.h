@@ -5,7 +5,6 @@
 #include <std_msgs/ColorRGBA.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -63,12 +62,13 @@ struct HandStyle {
 void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& style, int first_id,
                   const MarkerLayer& layer);
 
+/// The shapes that are drawn of a body: its visuals, or without any its collision shapes.
+std::vector<Visual> drawn_shapes(const Body& body);
+
 /// Adds a shape as a marker; a box has the lighting of hands. Valid until the layer's next call.
 visualization_msgs::Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint,
                                       int id, const MarkerLayer& layer);
 
-/// Largest distance between corresponding ends of two hands' phalanges [m].
-double farthest_apart(const Hand& a, const Hand& b);
 /// Opacity of a ghost's vertex by its distance from the same vertex of the rendered hand [m].
 float ghost_opacity(double distance, const PictureStyle& style);
 /// Colour of a ghost's vertex with this normal, lighting included.
@@ -77,7 +77,6 @@ Rgb ghost_colour(const Vector3& normal, const PictureStyle& style);
 /// Draws hands as triangles. A hand with missing bones has no skin, and is drawn as capsules.
 class HandMarkers {
  public:
-  explicit HandMarkers(const Skin& skin);  ///< keeps a reference
   /// `hand`: skins; `ghost`: tracked hands' skins where they differ; `capsules`: rendered hands as simulated.
   /// kIdsPerHand for each hand. Without `style.skins` the first two have only hands without a skin.
   void add(const FrameResult& result, const SimulationState& state, const PictureStyle& style,
@@ -86,25 +85,20 @@ class HandMarkers {
   void recycle(std::vector<visualization_msgs::Marker>& markers);
 
  private:
-  void add_hand(const RenderedHand& rendered, const Hand& tracked, const FrameResult& result,
-                const SimulationState& state, const PictureStyle& style, int first_id,
-                const MarkerLayer& hand, const MarkerLayer& ghost);
-  visualization_msgs::Marker& add_triangles(int id, const MarkerLayer& layer);
-  void add_skin(const RenderedHand& rendered, int id, const MarkerLayer& layer);
-  void add_ghost(const Hand& rendered, const Hand& tracked, const PictureStyle& style, int id,
-                 const MarkerLayer& layer);
+  bool pose_ghost(const Hand& rendered, const Hand& tracked, const PictureStyle& style);
+  void add_skin(const Skin& skin, Side side, int id, const MarkerLayer& layer);
 
-  const Skin &skin_, &outline_;
-  const SkinPaint paint_;
-  SkinSurface surface_, ghost_, beneath_;  // reused memory, like the rest
+  const Skin &skin_ = Skin::human(), &outline_ = Skin::outline();
+  SkinSurface surface_, beneath_;  // reused memory, like the rest
   std::vector<Rgb> colours_;
   std::vector<float> alphas_;
   std::vector<visualization_msgs::Marker> spare_;
 };
 
-/// The colour of a surface with this normal in the lighting of hands: rviz's own leaves averted sides almost
-/// black.
-std_msgs::ColorRGBA lit(const Vector3& normal, const std_msgs::ColorRGBA& paint);
+/// Adds a vertex and its colour, by its normal (unit, world), in the lighting of hands: rviz's own leaves
+/// averted sides almost black.
+void add_lit(const Vector3& point, const Vector3& normal, const std_msgs::ColorRGBA& paint,
+             visualization_msgs::Marker& marker);
 
 /// From `begin` to `tip`, in world [m].
 struct Arrow {
@@ -112,7 +106,7 @@ struct Arrow {
   double shaft_radius, head_radius, head_length;  ///< [m]; the head is at most as long as the arrow
 };
 
-/// Lit as by lit(). Valid until the layer's next call.
+/// Lit as by add_lit(). Valid until the layer's next call.
 visualization_msgs::Marker& add_arrow(const Arrow& arrow, const std_msgs::ColorRGBA& paint, int id,
                                       const MarkerLayer& layer);
 

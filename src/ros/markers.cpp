@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "../math/rotation.h"
 #include "../rendering/skin.h"
 #include "../simulation/contact_phase.h"
+#include "../text/text.h"
 #include "marker_layers.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 
@@ -28,13 +28,12 @@ Vector3 below(const Scene& scene) {
 }
 
 std::string held_by_hands(const Scene& scene, const FrameResult& result, const SimulationState& state) {
-  std::string held;
+  std::vector<std::string> held;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if (!is_held(i, state)) continue;
-    held += (held.empty() ? "" : ", ") + scene.bodies[i].name +
-            (assist_force(i, result) ? " (with grasp assist)" : "");
+    if (is_held(i, state))
+      held.push_back(scene.bodies[i].name + (assist_force(i, result) ? " (with grasp assist)" : ""));
   }
-  return "holding: " + (held.empty() ? "nothing" : held);
+  return "holding: " + (held.empty() ? "nothing" : text::joined(held));
 }
 
 /// Linear and angular speed of each operator; empty without operators.
@@ -43,10 +42,8 @@ std::string motion_of_operators(const Scene& scene, const SimulationState& state
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (!scene.bodies[i].is_operator) continue;
     const Twist twist = twist_of(scene.bodies[i], state.bodies[i]);
-    char text[64];
-    std::snprintf(text, sizeof text, ": %.3f m/s, %.1f deg/s", twist.linear.norm(),
-                  twist.angular.norm() / kDegree);
-    all += "\n" + scene.bodies[i].name + text;
+    all += "\n" + scene.bodies[i].name +
+           text::format(": %.3f m/s, %.1f deg/s", twist.linear.norm(), twist.angular.norm() / kDegree);
   }
   return all;
 }
@@ -67,79 +64,63 @@ constexpr double kMinOpacity = 0.6;
 /// A mesh stays opaque: viewers do not sort its triangles, so that a translucent one would show some of its
 /// far side.
 bool may_be_translucent(const Body& body) {
-  const auto is_mesh = [](const auto& part) { return std::holds_alternative<Mesh>(part.shape); };
-  return body.visuals.empty() ? std::none_of(body.shapes.begin(), body.shapes.end(), is_mesh)
-                              : std::none_of(body.visuals.begin(), body.visuals.end(), is_mesh);
+  const std::vector<Visual> shapes = drawn_shapes(body);
+  return std::none_of(shapes.begin(), shapes.end(),
+                      [](const Visual& drawn) { return std::holds_alternative<Mesh>(drawn.shape); });
 }
 
 bool same(const Pose& a, const Pose& b) {
   return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
 }
 
-/// A box in the lighting of hands: rviz's own leaves averted sides almost black.
-Marker& add_box(const Box& box, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
-                const MarkerLayer& layer) {
-  Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, pose, 2.0 * box.half_extents, paint);
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double side : {-0.5, 0.5}) {
-      const Vector3 out = side * Vector3::Unit(axis), u = 0.5 * Vector3::Unit((axis + 1) % 3),
-                    v = std::copysign(0.5, side) * Vector3::Unit((axis + 2) % 3);
-      const std::array<Vector3, 6> corners{-u - v, u - v, u + v, -u - v, u + v, -u + v};
-      for (const Vector3& corner : corners) {
-        marker.points.push_back(to_message(Vector3(out + corner)));
-        marker.colors.push_back(lit(pose.orientation * (2.0 * out), paint));
-      }
-    }
-  }
-  return marker;
-}
-
-/// A shape without a marker type in rviz, as its support points in directions all around, in that lighting. A
-/// flat side would be a single point, so only for round shapes.
-template <typename Round>
-Marker& add_round(const Round& shape, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
-                  const MarkerLayer& layer) {
-  constexpr int kAround = 24, kRows = 13;  // odd: no row of directions is perpendicular to z
-  constexpr double kPi = 3.141592653589793;
-  Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, pose, Vector3::Ones(), paint);
-  const auto direction = [&](int row, int place) -> Vector3 {
-    const double up = kPi * (static_cast<double>(row) / kRows - 0.5), turn = 2.0 * kPi / kAround * place;
-    return {std::cos(up) * std::cos(turn), std::cos(up) * std::sin(turn), std::sin(up)};
-  };
-  const auto add = [&](int row, int place) {
-    const Vector3 out = direction(row, place);
-    marker.points.push_back(to_message(shape.farthest(out)));
-    marker.colors.push_back(lit(pose.orientation * out, paint));
-  };
-  for (int row = 0; row < kRows; ++row) {
-    for (int place = 0; place < kAround; ++place) {
-      add(row, place), add(row, place + 1), add(row + 1, place + 1);
-      add(row, place), add(row + 1, place + 1), add(row + 1, place);
-    }
-  }
-  return marker;
-}
-
-struct AddShape {
+/// Adds a shape to a layer.
+struct ShapeMarker {
   const Pose& pose;
   const std_msgs::ColorRGBA& paint;
   int id;
   const MarkerLayer& layer;
 
   Marker& operator()(const Sphere& s) const { return add(Marker::SPHERE, Vector3::Constant(2.0 * s.radius)); }
-  Marker& operator()(const Box& b) const { return add_box(b, pose, paint, id, layer); }
   Marker& operator()(const Cylinder& c) const {
     return add(Marker::CYLINDER, {2.0 * c.radius, 2.0 * c.radius, 2.0 * c.half_length});
   }
-
-  template <typename Other>
-  Marker& operator()(const Other& round) const {
-    return add_round(round, pose, paint, id, layer);
-  }
-
   Marker& operator()(const Mesh& m) const {
     Marker& marker = add(Marker::MESH_RESOURCE, m.scale);
     marker.mesh_resource = m.uri;
+    return marker;
+  }
+
+  /// Lit like hands: rviz's own box has averted sides that are almost black.
+  Marker& operator()(const Box& box) const {
+    Marker& marker = add(Marker::TRIANGLE_LIST, 2.0 * box.half_extents);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-0.5, 0.5}) {
+        const Vector3 out = side * Vector3::Unit(axis), u = 0.5 * Vector3::Unit((axis + 1) % 3),
+                      v = std::copysign(0.5, side) * Vector3::Unit((axis + 2) % 3);
+        for (const Vector3& corner : std::array<Vector3, 6>{-u - v, u - v, u + v, -u - v, u + v, -u + v})
+          add_lit(out + corner, pose.orientation * (2.0 * out), paint, marker);
+      }
+    }
+    return marker;
+  }
+
+  /// A shape without a marker type in rviz, as its support points in directions all around. A flat side would
+  /// be a single point, so only for round shapes.
+  template <typename Round>
+  Marker& operator()(const Round& shape) const {
+    constexpr int kAround = 24, kRows = 13;  // odd: no row of directions is perpendicular to z
+    Marker& marker = add(Marker::TRIANGLE_LIST, Vector3::Ones());
+    const auto add_point = [&](int row, int place) {
+      const double up = M_PI * (static_cast<double>(row) / kRows - 0.5), turn = 2.0 * M_PI / kAround * place;
+      const Vector3 out(std::cos(up) * std::cos(turn), std::cos(up) * std::sin(turn), std::sin(up));
+      add_lit(shape.farthest(out), pose.orientation * out, paint, marker);
+    };
+    for (int row = 0; row < kRows; ++row) {
+      for (int place = 0; place < kAround; ++place) {
+        add_point(row, place), add_point(row, place + 1), add_point(row + 1, place + 1);
+        add_point(row, place), add_point(row + 1, place + 1), add_point(row + 1, place);
+      }
+    }
     return marker;
   }
 
@@ -168,11 +149,12 @@ std_msgs::ColorRGBA color(double r, double g, double b, double a) {
   return c;
 }
 
-std_msgs::ColorRGBA lit(const Vector3& normal, const std_msgs::ColorRGBA& paint) {
+void add_lit(const Vector3& point, const Vector3& normal, const std_msgs::ColorRGBA& paint, Marker& marker) {
   const Rgb light = light_on(normal.cast<float>()).min(1.0f);
   std_msgs::ColorRGBA colour = paint;
   colour.r *= light[0], colour.g *= light[1], colour.b *= light[2];
-  return colour;
+  marker.points.push_back(to_message(point));
+  marker.colors.push_back(colour);
 }
 
 Marker& MarkerLayer::add(int id, int type, const Pose& pose, const Vector3& scale,
@@ -195,14 +177,22 @@ Marker& MarkerLayer::add(int id, int type, const Pose& pose, const Vector3& scal
 
 std::string caption(const std::string& contact_model, const Vector3& gravity) {
   const double g = gravity.norm();
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f m/s2", g);
-  return contact_model + "  |  gravity: " + (g > 0.0 ? text : "none");
+  return contact_model + "  |  gravity: " + (g > 0.0 ? text::format("%.2f m/s2", g) : "none");
+}
+
+std::vector<Visual> drawn_shapes(const Body& body) {
+  if (!body.visuals.empty()) return body.visuals;
+  std::vector<Visual> shapes;
+  for (const PlacedShape& placed : body.shapes) {
+    shapes.push_back({placed.shape, placed.pose});
+    shapes.back().has_color = true;
+  }
+  return shapes;
 }
 
 Marker& add_shape(const Shape& shape, const Pose& pose, const std_msgs::ColorRGBA& paint, int id,
                   const MarkerLayer& layer) {
-  return std::visit(AddShape{pose, paint, id, layer}, shape);
+  return std::visit(ShapeMarker{pose, paint, id, layer}, shape);
 }
 
 /// Draws the bodies of a scene, in layers `objects` and `fixtures`. A body without a mesh that a tracked
@@ -228,10 +218,11 @@ class BodyMarkers {
     int object_id = 0, fixture_id = 0;
     for (std::size_t i = 0; i < now_.size(); ++i) {
       const Body& body = scene_.bodies[i];
-      int& id = body.fixed ? fixture_id : object_id;
       const bool changed = all || !same(now_[i].pose, added_[i].pose) || now_[i].opacity != added_[i].opacity;
-      if (changed) add_body(body, now_[i], id, body.fixed ? fixtures : objects);
-      id += static_cast<int>(body.visuals.empty() ? body.shapes.size() : body.visuals.size());
+      for (const Visual& drawn : drawn_shapes(body)) {
+        const int id = (body.fixed ? fixture_id : object_id)++;
+        if (changed) add_part(drawn, now_[i], body.name, id, body.fixed ? fixtures : objects);
+      }
     }
     added_.swap(now_);
   }
@@ -241,26 +232,28 @@ class BodyMarkers {
     Pose pose;
     double opacity = 1.0;
   };
-  void add_body(const Body& body, const Look& look, int first_id, const MarkerLayer& layer) const {
-    int id = first_id;
-    for (const Visual& visual : body.visuals) {
-      const auto& c = visual.rgba;
-      Marker& marker = add_shape(visual.shape, look.pose * visual.pose,
-                                 color(c[0], c[1], c[2], look.opacity * c[3]), id++, layer);
-      marker.text = body.name;
-      if (!visual.has_color && has_materials(marker.mesh_resource)) {
-        marker.mesh_use_embedded_materials = true;
-        marker.color = color(0.0, 0.0, 0.0, 0.0);  // rviz then keeps the mesh's materials
-      }
-    }
-    if (!body.visuals.empty()) return;
-    for (const PlacedShape& placed : body.shapes)
-      add_shape(placed.shape, look.pose * placed.pose, color(0.7, 0.7, 0.7, look.opacity), id++, layer).text =
-          body.name;
+  static void add_part(const Visual& drawn, const Look& look, const std::string& body, int id,
+                       const MarkerLayer& layer) {
+    const auto& c = drawn.rgba;
+    Marker& marker = add_shape(drawn.shape, look.pose * drawn.pose,
+                               color(c[0], c[1], c[2], look.opacity * c[3]), id, layer);
+    marker.text = body;
+    if (drawn.has_color || !has_materials(marker.mesh_resource)) return;
+    marker.mesh_use_embedded_materials = true;
+    marker.color = color(0.0, 0.0, 0.0, 0.0);  // rviz then keeps the mesh's materials
   }
 
   const Scene& scene_;
   std::vector<Look> added_, now_;
+};
+
+struct Markers::Parts {
+  explicit Parts(const Scene& scene) : bodies(scene), shadows(scene, ground_height(scene)) {}
+
+  HandMarkers hands;
+  BodyMarkers bodies;
+  ShadowMarkers shadows;
+  ImpactMarkers impacts;
 };
 
 Markers::Markers(const Scene& scene, std::string caption, PictureStyle style)
@@ -268,10 +261,7 @@ Markers::Markers(const Scene& scene, std::string caption, PictureStyle style)
       caption_(std::move(caption)),
       style_(style),
       text_place_(below(scene)),
-      hands_(std::make_unique<HandMarkers>(Skin::human())),
-      bodies_(std::make_unique<BodyMarkers>(scene)),
-      shadows_(std::make_unique<ShadowMarkers>(scene, ground_height(scene))),
-      impacts_(std::make_unique<ImpactMarkers>()) {}
+      parts_(std::make_unique<Parts>(scene)) {}
 Markers::Markers(const Scene& scene, const Configuration& configuration, PictureStyle style)
     : Markers(scene,
               mrhi::caption(std::string(configuration.contact_model.name),
@@ -285,29 +275,28 @@ void Markers::clear() {
 }
 
 void Markers::note(const FrameResult& result, const ros::Time& stamp) {
-  impacts_->note(result.contacts, stamp);
+  parts_->impacts.note(result.contacts, stamp);
 }
 
 void Markers::update(const FrameResult& result, const SimulationState& state, const std_msgs::Header& header,
                      MarkerArray& array) {
-  hands_->recycle(array.markers);
+  parts_->hands.recycle(array.markers);
   array.markers.clear();
   const bool all = all_due(header.stamp);
   if (std::exchange(cleared_, false)) add_deleting(Marker::DELETEALL, {}, header, array);
   const MarkerLayers layers{array, header};
-  hands_->add(result, state, style_, layers);
+  parts_->hands.add(result, state, style_, layers);
   add_contacts(scene_, result, state, style_, layers);
-  impacts_->add(header.stamp, style_, layers.layer("impacts"));
+  parts_->impacts.add(header.stamp, style_, layers.layer("impacts"));
   delete_gone(header, array);
-  bodies_->add(state, result.contacts, all, layers);
-  shadows_->add(state, result, all, layers.layer("shadows", kForEver));
+  parts_->bodies.add(state, result.contacts, all, layers);
+  parts_->shadows.add(state, result, all, layers.layer("shadows", kForEver));
   std::string text =
       held_by_hands(scene_, result, state) + "  |  " + caption_ + motion_of_operators(scene_, state);
   if (!all && text == text_) return;
   text_ = std::move(text);
   layers.layer("text", kForEver)
-      .add(0, Marker::TEXT_VIEW_FACING, {text_place_, Quaternion::Identity()}, Vector3::Constant(0.011),
-           color(0.9, 0.9, 0.9))
+      .add(0, Marker::TEXT_VIEW_FACING, {text_place_}, Vector3::Constant(0.011), color(0.9, 0.9, 0.9))
       .text = text_;
 }
 

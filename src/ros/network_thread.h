@@ -8,9 +8,23 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <utility>
 
 namespace mrhi {
+
+/// A function in a callback queue.
+class QueuedTask : public ros::CallbackInterface {
+ public:
+  explicit QueuedTask(std::function<void()> run) : run_(std::move(run)) {}
+  CallResult call() override {
+    run_();
+    return Success;
+  }
+
+ private:
+  std::function<void()> run_;
+};
 
 /// A callback queue that roscpp's network thread calls, which receives and sends all messages: a frame goes
 /// from its arrival to the departure of its results without waking another thread. Callbacks run one at a
@@ -48,16 +62,6 @@ class NetworkThreadQueue : public ros::CallbackQueue {
   }
 
  private:
-  /// Throws an exception of the network thread in the thread of ros::spin().
-  class Failure : public ros::CallbackInterface {
-   public:
-    explicit Failure(std::exception_ptr exception) : exception_(std::move(exception)) {}
-    CallResult call() override { std::rethrow_exception(exception_); }
-
-   private:
-    std::exception_ptr exception_;
-  };
-
   /// Waits for the network thread to leave call(), which is not called again.
   void stop() { ros::PollManager::instance()->removePollThreadListener(listener_); }
 
@@ -67,7 +71,8 @@ class NetworkThreadQueue : public ros::CallbackQueue {
       callAvailable();
     } catch (...) {
       disable();
-      ros::getGlobalCallbackQueue()->addCallback(boost::make_shared<Failure>(std::current_exception()));
+      ros::getGlobalCallbackQueue()->addCallback(boost::make_shared<QueuedTask>(
+          [error = std::current_exception()] { std::rethrow_exception(error); }));
     }
   }
 

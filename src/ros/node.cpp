@@ -99,6 +99,15 @@ std::optional<int> status_of_arguments(int argc, char** argv, const char* usage)
   return 2;
 }
 
+const std::string kTwists = "object_twist/";
+
+std::optional<Twist> twist_in(const std::string& name, const std::string& text) {
+  return read_yaml<ParameterError>("parameter '" + name + "'", [&]() -> std::optional<Twist> {
+    const auto v = yaml_numbers(load_yaml("parameter '" + name + "'", text), 6);
+    return v ? std::make_optional(Twist{Vector3(v->data()), Vector3(v->data() + 3)}) : std::nullopt;
+  });
+}
+
 /// Lets the node finish its work on these signals. Call after ros::init().
 void end_in_order() {
   struct sigaction action {};
@@ -139,6 +148,14 @@ NodeParameters& NodeParameters::text(const std::string& name, std::string& value
   });
 }
 
+NodeParameters& NodeParameters::required(const std::string& name, const std::string& allowed,
+                                         std::string& value) {
+  text(name, value);
+  entries_.back().allowed = allowed;
+  entries_.back().required = &value;
+  return *this;
+}
+
 NodeParameters& NodeParameters::texts(const std::string& name, std::size_t min, std::size_t max,
                                       const std::string& what, std::vector<std::string>& values) {
   const std::string allowed = "a list of " + std::to_string(min) + " to " + std::to_string(max) + " " + what;
@@ -170,6 +187,13 @@ void NodeParameters::read(const ros::NodeHandle& private_node) const {
   if (private_node.getParam(private_node.getNamespace(), values) &&
       values.getType() == XmlRpc::XmlRpcValue::TypeStruct)
     take_all("", values);
+  for (const Entry& entry : entries_)
+    if (entry.required != nullptr && entry.required->empty()) entry.refuse(entry.name, "");
+}
+
+void NodeParameters::Entry::refuse(const std::string& as, const std::string& text) const {
+  throw ParameterError("parameter '" + as + "': " + (text.empty() ? "''" : text::one_line(text, 60)) +
+                       " is not allowed; allowed: " + allowed);
 }
 
 void NodeParameters::take_all(const std::string& prefix, XmlRpc::XmlRpcValue& values) const {
@@ -191,13 +215,59 @@ void NodeParameters::take(const std::string& name, const std::string& text) cons
     const bool space = entry.name.back() == '/';
     if (name == entry.name || (space && name.compare(0, entry.name.size(), entry.name) == 0)) {
       if (entry.take(name, text)) return;
-      throw ParameterError("parameter '" + name + "': " + (text.empty() ? "''" : text::one_line(text, 60)) +
-                           " is not allowed; allowed: " + entry.allowed);
+      entry.refuse(name, text);
     }
     if (!space) names.push_back(entry.name);
   }
   throw ParameterError("unknown parameter '" + text::one_line(name, 60) +
                        "'; allowed: " + text::joined(names));
+}
+
+std::string yaml_text(XmlRpc::XmlRpcValue value) {
+  using Value = XmlRpc::XmlRpcValue;
+  switch (value.getType()) {
+    case Value::TypeBoolean:
+      return static_cast<bool>(value) ? "true" : "false";
+    case Value::TypeInt:
+      return std::to_string(static_cast<int>(value));
+    case Value::TypeString:
+      return static_cast<std::string>(value);
+    case Value::TypeDouble:
+      return text::exact(static_cast<double>(value));
+    case Value::TypeArray: {
+      std::vector<std::string> items;
+      for (int i = 0; i < value.size(); ++i) items.push_back(yaml_text(value[i]));
+      return "[" + text::joined(items) + "]";
+    }
+    default:
+      return "a value of no known type";
+  }
+}
+
+ServerParameters read_server_parameters(const ros::NodeHandle& private_node) {
+  ServerParameters read;
+  NodeParameters known;
+  known.required("scene", "text", read.scene).required("fixed_frame", "text", read.fixed_frame);
+  known.choice<HapticsRate>("haptics/rate", {{"frame", HapticsRate::frame}, {"step", HapticsRate::step}},
+                            read.haptics_rate);
+  known.truth("place_by_mouse", read.place_by_mouse).truth("standard_outputs", read.standard_outputs);
+  known.add(kTwists, "six numbers [vx, vy, vz, wx, wy, wz] in m/s and rad/s",
+            [&read](const std::string& name, const std::string& text) {
+              const std::optional<Twist> twist = twist_in(name, text);
+              if (twist) read.object_twists[name.substr(kTwists.size())] = *twist;
+              return twist.has_value();
+            });
+  const auto leave = [](const std::string&, const std::string&) { return true; };
+  // Parameters of dynamic_reconfigure, and of hand tracking in the same process.
+  known.add("tune/", "", leave).add("hand_tracking/", "", leave);
+  for (const std::string& parameter : parameter_names())
+    known.add(parameter, "", [&read](const std::string& name, const std::string& text) {
+      set_parameter(read.configuration, name, text);
+      return true;
+    });
+  known.read(private_node);
+  validate(read.configuration);
+  return read;
 }
 
 }  // namespace mrhi

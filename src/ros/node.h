@@ -24,11 +24,12 @@ int run_node(int argc, char** argv, const char* name, const char* usage, const N
 /// The same without checking arguments.
 int run_node(int argc, char** argv, const char* name, const NodeBody& body);
 
-/// main() of a node that is an object, made from its handles, which works while ROS spins.
-template <class Node>
+/// main() of a node that is an object, made from its handles and its `Parameters` on the parameter server,
+/// which works while ROS spins.
+template <class Node, class Parameters>
 int run_node(int argc, char** argv, const char* name, const char* usage) {
   return run_node(argc, argv, name, usage, [](const auto& node, const auto& private_node) {
-    const Node running(node, private_node);
+    const Node running(node, private_node, Parameters(private_node));
     ros::spin();
   });
 }
@@ -42,6 +43,8 @@ class NodeParameters {
   /// `allowed`: for messages. A name that ends with / stands for all parameters below it.
   NodeParameters& add(const std::string& name, const std::string& allowed, const Take& take);
   NodeParameters& text(const std::string& name, std::string& value);
+  /// A text that must not be empty.
+  NodeParameters& required(const std::string& name, const std::string& allowed, std::string& value);
   /// A list of `min` to `max` texts; `what` describes them.
   NodeParameters& texts(const std::string& name, std::size_t min, std::size_t max, const std::string& what,
                         std::vector<std::string>& values);
@@ -83,6 +86,9 @@ class NodeParameters {
   struct Entry {
     std::string name, allowed;
     Take take;
+    const std::string* required = nullptr;
+
+    [[noreturn]] void refuse(const std::string& as, const std::string& text) const;
   };
   void take(const std::string& name, const std::string& text) const;
   void take_all(const std::string& prefix, XmlRpc::XmlRpcValue& values) const;

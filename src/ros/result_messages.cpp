@@ -10,42 +10,18 @@
 #include "../text/text.h"
 #include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
+#include "mr_hand_interaction/ros/markers.h"
 
 namespace mrhi {
 
-static_assert(mr_hand_interaction::Contact::IMPULSE == int(ContactPhase::impulse) &&
-                  mr_hand_interaction::Contact::STICKING == int(ContactPhase::sticking) &&
-                  mr_hand_interaction::Contact::SLIPPING == int(ContactPhase::slipping),
+namespace msg = mr_hand_interaction;
+
+static_assert(msg::Contact::IMPULSE == int(ContactPhase::impulse) &&
+                  msg::Contact::STICKING == int(ContactPhase::sticking) &&
+                  msg::Contact::SLIPPING == int(ContactPhase::slipping),
               "phases are numbered as in Contact.msg");
 
 namespace {
-
-/// Sums the contacts of one phalanx with one body.
-class Feeling {
- public:
-  void add(const Contact& contact) {
-    force_ += contact.force;
-    impulse_ += contact.impulse;
-    normals_ += contact.normal;
-    depth_ = std::max(depth_, contact.depth);
-    slips_ = slips_ || (contact.touching() && contact.friction == Friction::slipping);
-  }
-
-  void fill(mr_hand_interaction::PhalanxHaptics& phalanx) const {
-    const Vector3 normal = normals_.normalized();
-    phalanx.slip = slips_ ? phalanx.SLIPPING : phalanx.STICKING;
-    phalanx.force = vector_message(force_);
-    phalanx.impulse = vector_message(impulse_);
-    phalanx.normal = vector_message(normal);
-    phalanx.pressure = std::max(0.0, -normal.dot(force_));
-    phalanx.depth = depth_;
-  }
-
- private:
-  Vector3 force_ = Vector3::Zero(), impulse_ = Vector3::Zero(), normals_ = Vector3::Zero();
-  double depth_ = 0.0;
-  bool slips_ = false;
-};
 
 bool is_felt(const Contact& contact) {
   return contact.touching() || !contact.impulse.isZero(0.0) || !contact.force.isZero(0.0);
@@ -55,29 +31,35 @@ bool same_phalanx(const Contact& a, const Contact& b) {
   return a.key.body == b.key.body && a.key.hand == b.key.hand && a.key.capsule == b.key.capsule;
 }
 
-mr_hand_interaction::PhalanxHaptics named(const Contact& contact, const Scene& scene) {
-  mr_hand_interaction::PhalanxHaptics phalanx;
-  phalanx.finger = static_cast<std::uint8_t>(finger_of(contact.key.capsule));
-  phalanx.bone = static_cast<std::uint8_t>(bone_of(contact.key.capsule));
-  phalanx.object = scene.bodies[contact.key.body].name;
-  return phalanx;
-}
-
-/// Contacts are sorted by body, then by hand and phalanx.
+/// Sums the contacts of each phalanx with each body. They are sorted by body, then by hand and phalanx.
 void add_phalanges(int slot, const Scene& scene, const std::vector<Contact>& contacts,
-                   std::vector<mr_hand_interaction::PhalanxHaptics>& phalanges) {
+                   std::vector<msg::PhalanxHaptics>& phalanges) {
   for (auto contact = contacts.begin(); contact != contacts.end();) {
     const auto first = contact;
-    Feeling feeling;
-    bool felt = false;
+    Vector3 force = Vector3::Zero(), impulse = Vector3::Zero(), normals = Vector3::Zero();
+    double depth = 0.0;
+    bool felt = false, slips = false;
     for (; contact != contacts.end() && same_phalanx(*first, *contact); ++contact) {
       if (first->key.hand != slot || !is_felt(*contact)) continue;
-      feeling.add(*contact);
+      force += contact->force;
+      impulse += contact->impulse;
+      normals += contact->normal;
+      depth = std::max(depth, contact->depth);
+      slips = slips || (contact->touching() && contact->friction == Friction::slipping);
       felt = true;
     }
     if (!felt) continue;
-    phalanges.push_back(named(*first, scene));
-    feeling.fill(phalanges.back());
+    const Vector3 normal = normals.normalized();
+    msg::PhalanxHaptics& phalanx = phalanges.emplace_back();
+    phalanx.finger = finger_of(first->key.capsule);
+    phalanx.bone = bone_of(first->key.capsule);
+    phalanx.object = scene.bodies[first->key.body].name;
+    phalanx.slip = slips ? phalanx.SLIPPING : phalanx.STICKING;
+    phalanx.force = vector_message(force);
+    phalanx.impulse = vector_message(impulse);
+    phalanx.normal = vector_message(normal);
+    phalanx.pressure = std::max(0.0, -normal.dot(force));
+    phalanx.depth = depth;
   }
 }
 
@@ -96,47 +78,48 @@ void add_finger(const Hand& hand, int finger, geometry_msgs::PoseArray& message)
   }
 }
 
-using mr_hand_interaction::SceneBody;
-using mr_hand_interaction::SceneShape;
-
-SceneShape shape_message(const Shape& shape, const Pose& pose) {
-  SceneShape message;
+msg::SceneShape shape_message(const Shape& shape, const Pose& pose) {
+  msg::SceneShape message;
   message.pose = to_message(pose);
   for (std::size_t type = 0; type < kShapeTypes.size(); ++type) {
     if (const auto size = find_shape_kind(kShapeTypes[type])->sizes_of(shape)) {
-      message.type = static_cast<std::uint8_t>(type);
+      message.type = type;
       message.size = *size;
     }
   }
   const Mesh* const mesh = std::get_if<Mesh>(&shape);
   if (mesh == nullptr) return message;
-  message.type = SceneShape::MESH;
+  message.type = msg::SceneShape::MESH;
   message.mesh = mesh->uri;
   message.scale = vector_message(mesh->scale);
   if (!mesh->triangles) return message;
   for (const Vector3& vertex : mesh->triangles->vertices) {
-    geometry_msgs::Point32 point;
-    point.x = static_cast<float>(vertex.x());
-    point.y = static_cast<float>(vertex.y());
-    point.z = static_cast<float>(vertex.z());
-    message.vertices.push_back(point);
+    geometry_msgs::Point32& point = message.vertices.emplace_back();
+    point.x = vertex.x(), point.y = vertex.y(), point.z = vertex.z();
   }
   for (const auto& triangle : mesh->triangles->triangles)
     message.triangles.insert(message.triangles.end(), triangle.begin(), triangle.end());
   return message;
 }
 
+/// A request without an orientation has the identity.
+Pose pose_or_identity(const geometry_msgs::Pose& message) {
+  Pose pose = from_message(message);
+  if (pose.orientation.coeffs().isZero(0.0)) pose.orientation.setIdentity();
+  return pose;
+}
+
 }  // namespace
 
-mr_hand_interaction::HandFrame tracked_message(const Outcome& outcome, const std_msgs::Header& header) {
-  mr_hand_interaction::HandFrame message;
+msg::HandFrame tracked_message(const Outcome& outcome, const std_msgs::Header& header) {
+  msg::HandFrame message;
   message.header = header;
   for (const Hand& hand : outcome.result.tracked) message.hands.push_back(to_message(hand));
   return message;
 }
 
-mr_hand_interaction::HandFrame rendered_message(const Outcome& outcome, const std_msgs::Header& header) {
-  mr_hand_interaction::HandFrame message;
+msg::HandFrame rendered_message(const Outcome& outcome, const std_msgs::Header& header) {
+  msg::HandFrame message;
   message.header = header;
   for (const RenderedHand& rendered : outcome.result.rendered) {
     message.hands.push_back(to_message(rendered.hand, rendered.touching));
@@ -144,16 +127,15 @@ mr_hand_interaction::HandFrame rendered_message(const Outcome& outcome, const st
   return message;
 }
 
-mr_hand_interaction::ObjectStateArray objects_message(const Outcome& outcome,
-                                                      const std_msgs::Header& header) {
+msg::ObjectStateArray objects_message(const Outcome& outcome, const std_msgs::Header& header) {
   const auto& [scene, result, state] = outcome;
-  mr_hand_interaction::ObjectStateArray message;
+  msg::ObjectStateArray message;
   message.header = header;
   message.objects.reserve(scene.bodies.size());
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (body.fixed) continue;
-    mr_hand_interaction::ObjectState& object = message.objects.emplace_back();
+    msg::ObjectState& object = message.objects.emplace_back();
     object.name = body.name;
     object.pose = to_message(state.bodies[i].pose);
     object.twist = to_message(twist_of(body, state.bodies[i]));
@@ -167,17 +149,17 @@ mr_hand_interaction::ObjectStateArray objects_message(const Outcome& outcome,
   return message;
 }
 
-mr_hand_interaction::ContactArray contacts_message(const Outcome& outcome, const std_msgs::Header& header) {
+msg::ContactArray contacts_message(const Outcome& outcome, const std_msgs::Header& header) {
   const auto& [scene, result, state] = outcome;
-  mr_hand_interaction::ContactArray message;
+  msg::ContactArray message;
   message.header = header;
   message.contacts.reserve(result.contacts.size());
   for (const Contact& contact : result.contacts) {
-    mr_hand_interaction::Contact& entry = message.contacts.emplace_back();
+    msg::Contact& entry = message.contacts.emplace_back();
     entry.object = scene.bodies[contact.key.body].name;
     entry.hand_id = hand_id(contact, state);
-    entry.finger = static_cast<std::uint8_t>(finger_of(contact.key.capsule));
-    entry.bone = static_cast<std::uint8_t>(bone_of(contact.key.capsule));
+    entry.finger = finger_of(contact.key.capsule);
+    entry.bone = bone_of(contact.key.capsule);
     entry.phase = static_cast<std::uint8_t>(phase(contact));
     entry.position = to_message(contact.point);
     entry.normal = vector_message(contact.normal);
@@ -192,8 +174,8 @@ mr_hand_interaction::ContactArray contacts_message(const Outcome& outcome, const
   return message;
 }
 
-mr_hand_interaction::RenderedView view_message(const Outcome& outcome, const std_msgs::Header& header) {
-  mr_hand_interaction::RenderedView message;
+msg::RenderedView view_message(const Outcome& outcome, const std_msgs::Header& header) {
+  msg::RenderedView message;
   message.header = header;
   message.rendered_hands = rendered_message(outcome, header).hands;
   message.tracked_hands = tracked_message(outcome, header).hands;
@@ -202,9 +184,9 @@ mr_hand_interaction::RenderedView view_message(const Outcome& outcome, const std
   return message;
 }
 
-mr_hand_interaction::InteractionEvent event_message(const Scene& scene, const FrameResult& result,
-                                                    const Event& event, const std_msgs::Header& header) {
-  mr_hand_interaction::InteractionEvent message;
+msg::InteractionEvent event_message(const Scene& scene, const FrameResult& result, const Event& event,
+                                    const std_msgs::Header& header) {
+  msg::InteractionEvent message;
   message.header = header;
   message.kind = static_cast<std::uint8_t>(event.kind);
   if (event.body >= 0) {
@@ -244,31 +226,30 @@ sensor_msgs::JointState joint_states_message(const Outcome& outcome, const std_m
   return message;
 }
 
-mr_hand_interaction::HapticsArray haptics_message(const Scene& scene, const SimulationState& state,
-                                                  const std::vector<Contact>& contacts,
-                                                  const std_msgs::Header& header) {
-  mr_hand_interaction::HapticsArray message;
+msg::HapticsArray haptics_message(const Scene& scene, const SimulationState& state,
+                                  const std::vector<Contact>& contacts, const std_msgs::Header& header) {
+  msg::HapticsArray message;
   message.header = header;
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     const HandTrack& track = state.hands[slot];
     if (!track.active) continue;
-    message.hands.emplace_back();
-    message.hands.back().id = track.current.id;
-    message.hands.back().side = static_cast<std::uint8_t>(track.current.side);
-    add_phalanges(static_cast<int>(slot), scene, contacts, message.hands.back().phalanges);
+    msg::HandHaptics& hand = message.hands.emplace_back();
+    hand.id = track.current.id;
+    hand.side = static_cast<std::uint8_t>(track.current.side);
+    add_phalanges(static_cast<int>(slot), scene, contacts, hand.phalanges);
   }
   return message;
 }
 
-mr_hand_interaction::SceneDescription scene_message(const Scene& scene, const Configuration& configuration,
-                                                    const std_msgs::Header& header) {
-  mr_hand_interaction::SceneDescription message;
+msg::SceneDescription scene_message(const Scene& scene, const Configuration& configuration,
+                                    const std_msgs::Header& header) {
+  msg::SceneDescription message;
   message.header = header;
   message.name = scene.name;
   message.model = std::string(configuration.contact_model.name);
   message.gravity = vector_message(configuration.gravity.value_or(scene.gravity));
   for (const Body& body : scene.bodies) {
-    SceneBody entry;
+    msg::SceneBody entry;
     entry.name = body.name;
     entry.fixed = body.fixed;
     entry.is_operator = body.is_operator;
@@ -279,11 +260,10 @@ mr_hand_interaction::SceneDescription scene_message(const Scene& scene, const Co
     for (const PlacedShape& placed : body.shapes)
       entry.shapes.push_back(shape_message(placed.shape, placed.pose));
     for (const Visual& visual : body.visuals) {
-      entry.visuals.push_back(shape_message(visual.shape, visual.pose));
       const bool own = !visual.has_color && std::holds_alternative<Mesh>(visual.shape);
       const auto& c = visual.rgba;
-      entry.visuals.back().color.r = c[0], entry.visuals.back().color.g = c[1];
-      entry.visuals.back().color.b = c[2], entry.visuals.back().color.a = own ? 0.0f : c[3];
+      entry.visuals.push_back(shape_message(visual.shape, visual.pose));
+      entry.visuals.back().color = color(c[0], c[1], c[2], own ? 0.0 : c[3]);
     }
     message.bodies.push_back(std::move(entry));
   }
@@ -319,15 +299,23 @@ std::string held_objects(const Scene& scene, const SimulationState& state) {
   return text::joined(names, ",");
 }
 
-ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& message) {
+double grip_force(const msg::ContactArray& message, const std::set<std::string>& bodies) {
+  double pressing = 0.0;
+  for (const auto& contact : message.contacts) {
+    if (bodies.count(contact.object) > 0)
+      pressing += std::max(0.0, -from_message(contact.normal).dot(from_message(contact.force)));
+  }
+  return 0.5 * pressing;
+}
+
+ObjectRequest from_message(const msg::SpawnObject::Request& message) {
   ObjectRequest request;
   request.name = message.name;
   request.urdf = message.urdf;
   request.shape = message.shape;
   request.size = message.size;
   request.mass = message.mass;
-  request.pose = from_message(message.pose);
-  if (request.pose.orientation.coeffs().isZero(0.0)) request.pose.orientation.setIdentity();
+  request.pose = pose_or_identity(message.pose);
   request.twist = from_message(message.twist);
   request.material = message.material;
   const auto& color = message.color;
@@ -336,14 +324,13 @@ ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& mess
   return request;
 }
 
-ObjectRequest from_message(const mr_hand_interaction::SpawnUrdf::Request& message) {
+ObjectRequest from_message(const msg::SpawnUrdf::Request& message) {
   ObjectRequest request;
   request.whole = true;
   request.name = message.name;
   request.urdf = message.urdf;
   request.joints = message.joints;
-  request.pose = from_message(message.pose);
-  if (request.pose.orientation.coeffs().isZero(0.0)) request.pose.orientation.setIdentity();
+  request.pose = pose_or_identity(message.pose);
   return request;
 }
 

@@ -16,6 +16,7 @@
 #include <std_msgs/Header.h>
 
 #include <array>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,9 @@ std::string held_objects(const Scene& scene, const SimulationState& state);
 /// Names of shapes by their number in SceneShape.msg, except meshes, which follow.
 constexpr std::array<const char*, mr_hand_interaction::SceneShape::MESH> kShapeTypes{
     {"sphere", "box", "cylinder", "capsule"}};
+
+/// Grip force of the hands on these bodies: half the sum of the normal forces [N].
+double grip_force(const mr_hand_interaction::ContactArray& message, const std::set<std::string>& bodies);
 
 ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& message);
 ObjectRequest from_message(const mr_hand_interaction::SpawnUrdf::Request& message);

@@ -109,38 +109,41 @@ class StandardOutputs {
                node_.advertise<geometry_msgs::PoseArray>("rendered_hands/right/pose_array", kQueue)},
         held_(node_.advertise<std_msgs::String>("held_object", kQueue, true)) {}
 
-  /// Publishes objects and hands.
-  void publish(const Scene& scene, const FrameResult& result, const SimulationState& state,
-               const std_msgs::Header& header) {
-    publish_objects(scene, state, header);
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-      if (scene.bodies[i].fixed) continue;
-      geometry_msgs::WrenchStamped wrench;
-      wrench.header = header;
-      wrench.wrench = wrench_message(i, result, state);
-      objects_.at(scene.bodies[i].name).wrench.publish(wrench);
+  /// Updates the topics to the bodies of this scene.
+  void show(const Scene& scene) {
+    for (auto topics = objects_.begin(); topics != objects_.end();) {
+      const auto body = find_body(scene, topics->first);
+      topics = body && !scene.bodies[*body].fixed ? std::next(topics) : objects_.erase(topics);
     }
+    for (const Body& body : scene.bodies)
+      if (!body.fixed && objects_.count(body.name) == 0) objects_.emplace(body.name, new_topics(body.name));
   }
 
-  void publish_hands(const FrameResult& result, const std_msgs::Header& header) {
-    for (const RenderedHand& rendered : result.rendered)
-      hands_[static_cast<std::size_t>(rendered.hand.side)].publish(pose_array_message(rendered.hand, header));
-  }
-
-  /// Publishes only poses and held objects.
-  void publish_objects(const Scene& scene, const SimulationState& state, const std_msgs::Header& header) {
-    follow(scene);
+  /// Publishes objects; without a result only poses and which are held.
+  void publish(const Scene& scene, const FrameResult* result, const SimulationState& state,
+               const std_msgs::Header& header) {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
       if (scene.bodies[i].fixed) continue;
+      const ObjectTopics& topics = objects_.at(scene.bodies[i].name);
       geometry_msgs::PoseStamped pose;
       pose.header = header;
       pose.pose = to_message(state.bodies[i].pose);
-      objects_.at(scene.bodies[i].name).pose.publish(pose);
+      topics.pose.publish(pose);
+      if (result == nullptr) continue;
+      geometry_msgs::WrenchStamped wrench;
+      wrench.header = header;
+      wrench.wrench = wrench_message(i, *result, state);
+      topics.wrench.publish(wrench);
     }
     std_msgs::String held;
     held.data = held_objects(scene, state);
     if (last_held_ != held.data) held_.publish(held);
     last_held_ = held.data;
+  }
+
+  void publish_hands(const FrameResult& result, const std_msgs::Header& header) {
+    for (const RenderedHand& rendered : result.rendered)
+      hands_[static_cast<std::size_t>(rendered.hand.side)].publish(pose_array_message(rendered.hand, header));
   }
 
  private:
@@ -150,29 +153,13 @@ class StandardOutputs {
     std::string name;  // without /pose and /wrench
     ros::Publisher pose, wrench;
   };
-  ObjectTopics new_topics(const std::string& body, const std::map<std::string, ObjectTopics>& there) {
+  ObjectTopics new_topics(const std::string& body) {
     std::string name = "objects/" + body;
     std::replace(name.begin(), name.end(), '-', '_');
     const auto is_taken = [&name](const auto& other) { return other.second.name == name; };
-    while (std::any_of(there.begin(), there.end(), is_taken)) name += '_';
+    while (std::any_of(objects_.begin(), objects_.end(), is_taken)) name += '_';
     return {name, node_.advertise<geometry_msgs::PoseStamped>(name + "/pose", kQueue),
             node_.advertise<geometry_msgs::WrenchStamped>(name + "/wrench", kQueue)};
-  }
-
-  /// Updates the topics to the present bodies.
-  void follow(const Scene& scene) {
-    std::map<std::string, ObjectTopics> objects;
-    const auto each_free = [&scene](auto&& use) {
-      for (const Body& body : scene.bodies)
-        if (!body.fixed) use(body.name);
-    };
-    each_free([&](const std::string& name) {
-      if (const auto known = objects_.find(name); known != objects_.end()) objects.insert(*known);
-    });
-    each_free([&](const std::string& name) {
-      if (objects.count(name) == 0) objects.emplace(name, new_topics(name, objects));
-    });
-    objects_ = std::move(objects);
   }
 
   ros::NodeHandle node_;
@@ -192,14 +179,13 @@ class ResultPublisher {
         clock_(clock),
         haptics_(node, haptics),
         events_(node.advertise<mr_hand_interaction::InteractionEvent>("interaction_events", kEventQueue)),
-        marker_publisher_(
-            node.advertise<visualization_msgs::MarkerArray>("markers", kQueue,
-                                                            [this](const ros::SingleSubscriberPublisher&) {
-                                                              if (markers_) markers_->send_all();
-                                                            })),
         scene_publisher_(node.advertise<mr_hand_interaction::SceneDescription>("scene", 1, true)),
         transforms_(node.advertise<tf2_msgs::TFMessage>("/tf", kTransformQueue)),
         picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {
+    marker_publisher_ =
+        node.advertise<visualization_msgs::MarkerArray>("markers", kQueue, [this](const auto&) {
+          if (markers_) markers_->send_all();
+        });
     add<mr_hand_interaction::ContactArray>(node, "contacts", Moment::response, Shows::hands,
                                            contacts_message);
     add<mr_hand_interaction::ObjectStateArray>(node, "objects", Moment::response, Shows::objects,
@@ -221,6 +207,7 @@ class ResultPublisher {
     markers_ = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
     markers_shown_ = ros::SteadyTime();
     scene_changed_ = true;
+    if (standard_) standard_->show(simulation.scene());
   }
 
   /// After each step of a frame.
@@ -233,7 +220,7 @@ class ResultPublisher {
     publish_scene_description();
     haptics_.publish(*simulation_, result, when);
     publish_outputs(Moment::response, result, when);
-    if (standard_) standard_->publish(simulation_->scene(), result, simulation_->state(), when);
+    if (standard_) standard_->publish(simulation_->scene(), &result, simulation_->state(), when);
   }
 
   /// Publishes the rendered view: hands, then transforms, events and, at most kMarkerRate times a second,
@@ -263,7 +250,7 @@ class ResultPublisher {
       if (!of_hands || has_hands) output.publish(result, as_it_was ? header(result) : header(stamp));
     }
     publish_transforms(header(stamp));
-    if (standard_) standard_->publish_objects(simulation_->scene(), simulation_->state(), header(stamp));
+    if (standard_) standard_->publish(simulation_->scene(), nullptr, simulation_->state(), header(stamp));
     publish_markers(result, header(stamp));
     shown_ = ros::SteadyTime::now();
   }
@@ -365,7 +352,7 @@ class ResultPublisher {
   HapticsPublisher haptics_;
   std::optional<StandardOutputs> standard_;
   std::vector<Output> outputs_;
-  ros::Publisher events_, marker_publisher_, scene_publisher_, transforms_;
+  ros::Publisher events_, scene_publisher_, transforms_, marker_publisher_;
   bool scene_changed_ = false;
   visualization_msgs::MarkerArray::Ptr picture_;  // the last one
   ros::Time transforms_stamp_;

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "../rendering/hand_renderer.h"
+#include "../rendering/renderer.h"
 #include "../scene/shape_kinds.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/simulation.h"

@@ -109,64 +109,41 @@ std::vector<Outline> outlines_of(const Hand& hand) {
   return outlines;
 }
 
-/// Shadow of one object: a grid of square cells, transparent at the edge.
-class Shadow {
- public:
-  Shadow(std::vector<Outline> outlines, double ground) : outlines_(std::move(outlines)), ground_(ground) {
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const Outline& outline : outlines_) lowest = std::min(lowest, outline.lowest);
-    height_ = lowest - ground;
-    soft_ = kSoft + kSoftening * std::max(0.0, height_);
-    dark_ = kDark * kFaintAt / (kFaintAt + std::max(0.0, height_));
-  }
-
-  void add_to(Marker& marker) {
-    if (outlines_.empty() || height_ < -kSunk || height_ > kHighest) return;
-    Eigen::AlignedBox2d extent;
-    for (const Outline& outline : outlines_) outline.extend(extent, soft_);
-    columns_ = 2 + static_cast<int>(extent.sizes().x() / kCell);
-    const int rows = 2 + static_cast<int>(extent.sizes().y() / kCell);
-    std::vector<double> below = opacities(extent.min(), 0), above;
-    for (int row = 0; row + 1 < rows; ++row, below.swap(above)) {
-      above = opacities(extent.min(), row + 1);
-      for (int column = 0; column + 1 < columns_; ++column)
-        add_cell(extent.min(), row, column, below, above, marker);
+/// Adds the shadow of one object: a grid of square cells, transparent at the edge.
+void add_shadow(const std::vector<Outline>& outlines, double ground, Marker& marker) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  double lowest = kInfinite;
+  for (const Outline& outline : outlines) lowest = std::min(lowest, outline.lowest);
+  const double height = lowest - ground;
+  if (outlines.empty() || height < -kSunk || height > kHighest) return;
+  const double soft = kSoft + kSoftening * std::max(0.0, height);
+  const double dark = kDark * kFaintAt / (kFaintAt + std::max(0.0, height));
+  Eigen::AlignedBox2d extent;
+  for (const Outline& outline : outlines) outline.extend(extent, soft);
+  const Eigen::Array2i size = 2 + (extent.sizes().array() / kCell).cast<int>();
+  const auto place = [&](int column, int row) -> Point { return extent.min() + kCell * Point(column, row); };
+  Eigen::ArrayXXd opacity(size.x(), size.y());
+  for (int row = 0; row < size.y(); ++row) {
+    for (int column = 0; column < size.x(); ++column) {
+      double distance = kInfinite;
+      for (const Outline& outline : outlines)
+        distance = std::min(distance, outline.distance(place(column, row)));
+      const double fraction = std::clamp(0.5 - distance / (2.0 * soft), 0.0, 1.0);
+      opacity(column, row) = dark * fraction * fraction * (3.0 - 2.0 * fraction);
     }
   }
-
- private:
-  std::vector<double> opacities(const Point& begin, int row) const {
-    std::vector<double> values;
-    for (int column = 0; column < columns_; ++column)
-      values.push_back(opacity(begin + kCell * Point(column, row)));
-    return values;
+  constexpr std::array<std::array<int, 2>, 6> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}}};
+  for (int row = 0; row + 1 < size.y(); ++row) {
+    for (int column = 0; column + 1 < size.x(); ++column) {
+      if (opacity.block<2, 2>(column, row).maxCoeff() < kMinOpacity) continue;
+      for (const auto& [right, up] : kCorners) {
+        const Point at = place(column + right, row + up);
+        marker.points.push_back(to_message(Vector3(at.x(), at.y(), ground + kLift)));
+        marker.colors.push_back(color(0.0, 0.0, 0.0, opacity(column + right, row + up)));
+      }
+    }
   }
-
-  double opacity(const Point& point) const {
-    double distance = std::numeric_limits<double>::infinity();
-    for (const Outline& outline : outlines_) distance = std::min(distance, outline.distance(point));
-    const double fraction = std::clamp(0.5 - distance / (2.0 * soft_), 0.0, 1.0);
-    return dark_ * fraction * fraction * (3.0 - 2.0 * fraction);
-  }
-
-  void add_cell(const Point& begin, int row, int column, const std::vector<double>& below,
-                const std::vector<double>& above, Marker& marker) const {
-    const auto i = static_cast<std::size_t>(column);
-    if (std::max({below[i], below[i + 1], above[i], above[i + 1]}) < kMinOpacity) return;
-    const auto add_corner = [&](int right, int up) {
-      const Point place = begin + kCell * Point(column + right, row + up);
-      const std::vector<double>& values = up ? above : below;
-      marker.points.push_back(to_message(Vector3(place.x(), place.y(), ground_ + kLift)));
-      marker.colors.push_back(color(0.0, 0.0, 0.0, values[i + right]));
-    };
-    add_corner(0, 0), add_corner(1, 0), add_corner(1, 1);
-    add_corner(0, 0), add_corner(1, 1), add_corner(0, 1);
-  }
-
-  std::vector<Outline> outlines_;
-  double ground_, height_ = 0.0, soft_ = 0.0, dark_ = 0.0;
-  int columns_ = 0;
-};
+}
 
 }  // namespace
 
@@ -206,7 +183,7 @@ void ShadowMarkers::add_one(int id, std::vector<Vector3> from, const Outlines& o
   Marker& marker = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(0.0, 0.0, 0.0, 0.99));
   if (moved) {
     cast.from = std::move(from);
-    Shadow(outlines(), ground_).add_to(marker);
+    add_shadow(outlines(), ground_, marker);
     cast.marker.points = marker.points, cast.marker.colors = marker.colors;
   } else {
     marker.points = cast.marker.points, marker.colors = cast.marker.colors;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 #include <vector>
 
@@ -27,24 +26,16 @@ constexpr std::size_t kMaxLetters = 44;  // letters per line
 const Vector3 kHeadingPlace(0.0, -0.136, 0.487), kTimerPlace(0.10, -0.155, 0.43);
 const Vector3 kDown(0.0, -0.2955, -0.9553);  // in that view
 
-std_msgs::ColorRGBA waiting() {
-  return color(0.337, 0.706, 0.914, 0.35);
-}
-std_msgs::ColorRGBA lit() {
-  return color(0.000, 0.620, 0.451, 0.6);
-}
-std_msgs::ColorRGBA white() {
-  return color(0.95, 0.95, 0.95);
-}
-
-Pose upright(const Vector3& position) {
-  return {position, Quaternion::Identity()};
+/// Of a target.
+std_msgs::ColorRGBA target_color(bool reached, double alpha) {
+  return reached ? color(0.000, 0.620, 0.451, alpha) : color(0.337, 0.706, 0.914, alpha);
 }
 
 void write(const MarkerLayer& layer, int id, const Vector3& place, const std::string& text,
            double height = kText) {
   if (text.empty()) return;
-  layer.add(id, Marker::TEXT_VIEW_FACING, upright(place), Vector3::Constant(height), white()).text = text;
+  layer.add(id, Marker::TEXT_VIEW_FACING, {place}, Vector3::Constant(height), color(0.95, 0.95, 0.95)).text =
+      text;
 }
 
 /// Breaks a text between words into lines of at most kMaxLetters letters.
@@ -76,16 +67,6 @@ Pose pose_at(const Goal& goal, const Session& session) {
   return {goal.position, goal.angle_tolerance ? goal.orientation : any};
 }
 
-/// Marks the target of a goal, if it has one.
-void add_goal(const Session& session, const Body& body, const Status& status, const MarkerLayer& layer) {
-  const Goal& goal = session.task().goals[session.trial().goal()];
-  if (goal.kind == GoalKind::nudge_into) {
-    layer.add(0, Marker::CUBE, upright(goal.position), goal.size, status.inside ? lit() : waiting());
-    return;
-  }
-  add_target({body, pose_at(goal, session), status.progress, status.inside != 0}, 0, layer);
-}
-
 void add_places(const Session& session, const Body& body, const MarkerLayer& places,
                 const MarkerLayer& path) {
   const Task& task = session.task();
@@ -108,37 +89,25 @@ void add_places(const Session& session, const Body& body, const MarkerLayer& pla
 }
 
 std::string heading(const Status& status) {
-  char buffer[160];
-  std::snprintf(buffer, sizeof buffer, "trial %u of %u: %s", status.trial, status.trials,
-                text::with_spaces(status.object).c_str());
-  return buffer;
+  return text::format("trial %u of %u: ", status.trial, status.trials) + text::with_spaces(status.object);
 }
 
 std::string timer_text(const Goal& goal, const Status& status) {
-  char buffer[64] = "";
-  const bool runs = status.progress > 0.0 && status.progress < 1.0;
-  if (status.phase == Status::RUNNING && runs && goal.kind != GoalKind::release)
-    std::snprintf(buffer, sizeof buffer, "%.1f s", status.remaining);
-  return buffer;
+  const bool runs = status.phase == Status::RUNNING && status.progress > 0.0 && status.progress < 1.0;
+  return runs && goal.kind != GoalKind::release ? text::format("%.1f s", status.remaining) : "";
 }
 
 std::string result_text(const Session& session, const Status& status) {
-  char buffer[160] = "";
-  if (status.phase == Status::RUNNING || status.phase == Status::PAUSED) {
-    std::snprintf(buffer, sizeof buffer, "%.0f s, dropped: %u", status.elapsed, status.drops);
-  } else if (session.last()) {
-    const TrialRow& last = *session.last();
-    std::snprintf(buffer, sizeof buffer, "%s: %s, %.1f s, dropped: %d",
-                  text::with_spaces(last.object).c_str(), to_string(last.result),
-                  last.measures.completion_time, last.measures.drops);
-    std::string line = buffer;
-    if (last.measures.release_drift) {
-      std::snprintf(buffer, sizeof buffer, ", drifted %.0f mm", 1e3 * *last.measures.release_drift);
-      line += buffer;
-    }
-    return line;
-  }
-  return buffer;
+  if (status.phase == Status::RUNNING || status.phase == Status::PAUSED)
+    return text::format("%.0f s, dropped: %u", status.elapsed, status.drops);
+  if (!session.last()) return "";
+  const TrialRow& last = *session.last();
+  const TrialMeasures& measures = last.measures;
+  const std::string line =
+      text::with_spaces(last.object) + text::format(": %s, %.1f s, dropped: %d", to_string(last.result),
+                                                    measures.completion_time, measures.drops);
+  return measures.release_drift ? line + text::format(", drifted %.0f mm", 1e3 * *measures.release_drift)
+                                : line;
 }
 
 }  // namespace
@@ -166,7 +135,12 @@ visualization_msgs::MarkerArray training_markers(
   const bool somewhere =
       goal.kind == GoalKind::nudge_into || comes_to_rest || goal.stage == TrainingStage::maintenance;
   if (active && somewhere) {
-    add_goal(session, body, status, target);
+    if (goal.kind == GoalKind::nudge_into) {
+      target.add(0, Marker::CUBE, {goal.position}, goal.size,
+                 status.inside ? target_color(true, 0.6) : target_color(false, 0.35));
+    } else {
+      add_target({body, pose_at(goal, session), status.progress, status.inside != 0}, 0, target);
+    }
     write(timer, 0, kTimerPlace, timer_text(goal, status), kTimer);
   }
   if (status.phase != Status::FINISHED) add_places(session, body, places, path);
@@ -184,20 +158,12 @@ constexpr double kShell = 1.12;      // size of a highlight, over the body's
 constexpr double kShaft = 0.035;     // of the arrow that points at the object [m]
 constexpr double kGap = 0.012;       // between arrow and object [m]
 
-std_msgs::ColorRGBA to_take(double alpha) {
-  return color(0.941, 0.894, 0.259, alpha);
-}
-
 /// Returns the next free id.
 int add_form(const Body& body, const Pose& pose, const std_msgs::ColorRGBA& paint, double size, int id,
              const MarkerLayer& layer) {
-  const auto add = [&](const Shape& shape, const Pose& place) {
-    Marker& marker = add_shape(shape, pose * place, paint, id++, layer);
+  for (const Visual& drawn : drawn_shapes(body)) {
+    Marker& marker = add_shape(drawn.shape, pose * drawn.pose, paint, id++, layer);
     for (double* const scale : {&marker.scale.x, &marker.scale.y, &marker.scale.z}) *scale *= size;
-  };
-  for (const Visual& visual : body.visuals) add(visual.shape, visual.pose);
-  if (body.visuals.empty()) {
-    for (const PlacedShape& placed : body.shapes) add(placed.shape, placed.pose);
   }
   return id;
 }
@@ -206,16 +172,13 @@ int add_form(const Body& body, const Pose& pose, const std_msgs::ColorRGBA& pain
 
 void add_target(const TargetMark& target, int first_id, const MarkerLayer& layer) {
   const double form = target.waits ? 0.12 : 0.35, filled = target.waits ? 0.25 : 1.0;
-  const auto paint = [&](double alpha) {
-    return target.reached ? color(0.000, 0.620, 0.451, alpha) : color(0.337, 0.706, 0.914, alpha);
-  };
-  const int id = add_form(target.body, target.pose, paint(form), 1.0, first_id, layer);
+  const int id = add_form(target.body, target.pose, target_color(target.reached, form), 1.0, first_id, layer);
   Marker& ring = layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), color(1.0, 1.0, 1.0));
   const double inner = ring_radius(target.body), outer = (1.0 + kRingWidth) * inner;
   const double progress = std::min(1.0, std::max(0.0, target.progress));
-  add_ring({inner, outer, 0.0, progress}, upright(target.pose.position), ring);
-  ring.colors.resize(ring.points.size(), paint(filled));
-  add_ring({inner, outer, progress, 1.0}, upright(target.pose.position), ring);
+  add_ring({inner, outer, 0.0, progress}, {target.pose.position}, ring);
+  ring.colors.resize(ring.points.size(), target_color(target.reached, filled));
+  add_ring({inner, outer, progress, 1.0}, {target.pose.position}, ring);
   ring.colors.resize(ring.points.size(), color(0.9, 0.9, 0.9, 0.3 * filled));
 }
 
@@ -224,9 +187,10 @@ double ring_radius(const Body& body) {
 }
 
 void add_highlight(const Body& body, const Pose& pose, int first_id, const MarkerLayer& layer) {
-  const int id = add_form(body, pose, to_take(0.45), kShell, first_id, layer);
+  const int id = add_form(body, pose, color(0.941, 0.894, 0.259, 0.45), kShell, first_id, layer);
   const Vector3 tip = pose.position + (body.bounding_radius + kGap) * Vector3::UnitZ();
-  add_arrow({tip + kShaft * Vector3::UnitZ(), tip, 0.003, 0.008, 0.018}, to_take(1.0), id, layer);
+  add_arrow({tip + kShaft * Vector3::UnitZ(), tip, 0.003, 0.008, 0.018}, color(0.941, 0.894, 0.259), id,
+            layer);
 }
 
 }  // namespace mrhi

@@ -10,7 +10,6 @@
 #include <std_srvs/Trigger.h>
 
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <functional>
@@ -39,21 +38,18 @@ struct TrainingParameters {
   explicit TrainingParameters(const ros::NodeHandle& private_node) {
     constexpr double kMaxBreak = 3600.0;  // [s]
     NodeParameters known;
-    known.text("task", task).text("participant", header.participant).text("group", header.group);
-    known.text("handedness", header.handedness).text("condition", header.condition);
+    known.text("task", task);
+    known.required("participant", "who takes part, such as P07", header.participant);
+    known.text("group", header.group)
+        .text("handedness", header.handedness)
+        .text("condition", header.condition);
     known.whole("seed", 0, header.seed).whole("session", 1, header.session).whole("number", 1, number);
     known.truth("simulated", header.simulated).truth("operator", by_operator).truth("auto_start", auto_start);
-    known.text("folder", folder).text("simulation", simulation);
+    known.required("folder", "where the session is to be", folder).text("simulation", simulation);
     known.number("auto_next", -kMaxBreak, kMaxBreak, auto_next, " [s], below 0: not by itself");
     known.read(private_node);
     const char* const home = std::getenv("HOME");
     if (home != nullptr && folder.compare(0, 2, "~/") == 0) folder = home + folder.substr(1);
-    const auto require = [](const char* name, const std::string& value, const std::string& allowed) {
-      if (value.empty())
-        throw ParameterError("parameter '" + std::string(name) + "': '' is not allowed; allowed: " + allowed);
-    };
-    require("participant", header.participant, "who takes part, such as P07");
-    require("folder", folder, "where the session is to be");
   }
 
   /// Configuration of the interaction node, from the parameter server, with a task's gravity.
@@ -98,10 +94,9 @@ struct TrainingParameters {
     const auto since = std::chrono::system_clock::now().time_since_epoch();
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(since).count();
     const std::time_t seconds = static_cast<std::time_t>(ms / 1000);
-    char whole[32], part[16] = "";
+    char whole[32];
     std::strftime(whole, sizeof whole, "%Y-%m-%dT%H:%M:%S", std::gmtime(&seconds));
-    if (with_milliseconds) std::snprintf(part, sizeof part, ".%03d", static_cast<int>(ms % 1000));
-    return std::string(whole) + part + "Z";
+    return whole + (with_milliseconds ? text::format(".%03d", static_cast<int>(ms % 1000)) : "") + "Z";
   }
 
   Configuration configuration_of(const ros::NodeHandle& node) const {
@@ -113,14 +108,7 @@ struct TrainingParameters {
 class TrainingScene {
  public:
   /// Throws SceneError for an object whose file cannot be read.
-  TrainingScene(ros::NodeHandle node, const std::string& simulation, const Task& task)
-      : task_(task),
-        spawn_(node.serviceClient<mr_hand_interaction::SpawnObject>(simulation + "/spawn")),
-        spawn_urdf_(node.serviceClient<mr_hand_interaction::SpawnUrdf>(simulation + "/spawn_urdf")),
-        delete_(node.serviceClient<mr_hand_interaction::DeleteObject>(simulation + "/delete")),
-        set_(node.serviceClient<mr_hand_interaction::SetParameter>(simulation + "/set")),
-        pause_(node.serviceClient<std_srvs::SetBool>(simulation + "/pause")),
-        reset_(node.serviceClient<std_srvs::Trigger>(simulation + "/reset")) {
+  TrainingScene(const std::string& simulation, const Task& task) : task_(task), simulation_(simulation) {
     needs_operator_ = !load_surroundings(task, scene_folders(), scene_options({})).operators.empty();
     for (const TaskObject& object : task.objects)
       models_[object.name] = load_object(object, task.goals, scene_folders(), scene_options({}));
@@ -144,28 +132,25 @@ class TrainingScene {
       if (models_.at(other.name).is_device()) remove(other.name);
     }
     for (const std::string& name : *names_) remove(name);
-    if (!set_up_) {
-      if (const std::string wrong = set_up(); !wrong.empty()) return wrong;
-    }
     std_srvs::Trigger reset;
-    if (needs_operator_) {
-      if (const std::string wrong = call(reset_, reset); !wrong.empty()) return wrong;
-    }
-    return spawn(models_.at(object.name));
+    std::string wrong = set_up_ ? "" : set_up();
+    if (wrong.empty() && needs_operator_) wrong = call("reset", reset);
+    return wrong.empty() ? spawn(models_.at(object.name)) : wrong;
   }
 
   std::string pause(bool paused) {
     std_srvs::SetBool service;
     service.request.data = paused;
-    return call(pause_, service);
+    return call("pause", service);
   }
 
   const ObjectModel& model(const std::string& object) const { return models_.at(object); }
 
  private:
   template <class Service>
-  static std::string call(ros::ServiceClient& client, Service& service) {
-    if (!client.call(service)) return "service " + client.getService() + " does not answer";
+  std::string call(const std::string& name, Service& service) const {
+    const std::string resolved = ros::names::resolve(simulation_ + "/" + name);
+    if (!ros::service::call(resolved, service)) return "service " + resolved + " does not answer";
     return service.response.success ? "" : service.response.message;
   }
 
@@ -173,7 +158,7 @@ class TrainingScene {
     mr_hand_interaction::SetParameter gravity;
     gravity.request.name = "gravity";
     gravity.request.value = text::vector(task_.gravity);
-    if (const std::string wrong = call(set_, gravity); !wrong.empty()) return wrong;
+    if (const std::string wrong = call("set", gravity); !wrong.empty()) return wrong;
     for (const Fixture& fixture : task_.fixtures) {
       remove(fixture.name);  // of an earlier session
       const std::string wrong = spawn(models_.at(fixture.name));
@@ -190,7 +175,7 @@ class TrainingScene {
       service.request.urdf = request.urdf;
       service.request.joints = request.joints;
       service.request.pose = to_message(request.pose);
-      return call(spawn_urdf_, service);
+      return call("spawn_urdf", service);
     }
     mr_hand_interaction::SpawnObject service;
     service.request.name = request.name;
@@ -198,20 +183,20 @@ class TrainingScene {
     service.request.pose = to_message(request.pose);
     service.request.twist = to_message(request.twist);
     service.request.material = request.material;
-    return call(spawn_, service);
+    return call("spawn", service);
   }
 
   std::string remove(const std::string& name) {
     mr_hand_interaction::DeleteObject service;
     service.request.name = name;
-    return call(delete_, service);
+    return call("delete", service);
   }
 
   const Task& task_;
+  const std::string simulation_;                // the node's name
   std::map<std::string, ObjectModel> models_;   // of objects and fixtures
   std::optional<std::set<std::string>> names_;  // empty before the first message
   bool set_up_ = false, has_operator_ = false, needs_operator_ = false;
-  ros::ServiceClient spawn_, spawn_urdf_, delete_, set_, pause_, reset_;
 };
 
 /// Observes the parameters of a running interaction_node by its `simulation_input`, whatever changes them:

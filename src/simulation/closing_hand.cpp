@@ -49,7 +49,7 @@ std::optional<ClosingHand::Nearest> ClosingHand::nearest(const Capsule& capsule,
   std::optional<Nearest> result;
   for (std::size_t i = 0; i < object.size(); ++i) {
     const int body = object[i];
-    const auto shapes = static_cast<int>(scene_.bodies[static_cast<std::size_t>(body)].shapes.size());
+    const auto shapes = static_cast<int>(scene_.bodies[body].shapes.size());
     for (int shape = 0; shape < shapes; ++shape) {
       const auto features = finder_.closest(capsule, body, shape, poses[i], margin);
       if (features && (!result || features->distance < result->features.distance))
@@ -63,7 +63,7 @@ double ClosingHand::gap(const Hand& hand, bool by_palm, bool of_base, const Obje
                         const Poses& poses, double limit) const {
   for (int c = 0; c < kCapsules; ++c) {
     if (!hand.has(c) || is_base(by_palm, c) != of_base) continue;
-    const auto found = nearest(hand.capsules[static_cast<std::size_t>(c)], object, poses, limit);
+    const auto found = nearest(hand.capsules[c], object, poses, limit);
     if (found) limit = std::min(limit, found->features.distance);
   }
   return limit;
@@ -72,7 +72,7 @@ double ClosingHand::gap(const Hand& hand, bool by_palm, bool of_base, const Obje
 bool ClosingHand::on_opposite_faces(const Hand& hand, bool by_palm, int finger, const Object& object,
                                     const Poses& poses) const {
   const auto under = [&](int capsule) {
-    return nearest(hand.capsules[static_cast<std::size_t>(capsule)], object, poses, kSearchDistance);
+    return nearest(hand.capsules[capsule], object, poses, kSearchDistance);
   };
   const auto tip = under(capsule_index(finger, 3)), base = under(by_palm ? kPalm : capsule_index(0, 3));
   return tip && base && tip->features.normal.dot(base->features.normal) < kMaxOpposingCosine;
@@ -85,7 +85,7 @@ bool ClosingHand::closes_on(const HandTrack& track, bool by_palm, int finger, co
   const Capsule line{base_of(hand, by_palm), tip_of(hand, finger), 0.0};
   bool is_far = true;
   for (std::size_t i = 0; i < object.size(); ++i) {
-    const Body& body = scene_.bodies[static_cast<std::size_t>(object[i])];
+    const Body& body = scene_.bodies[object[i]];
     is_far = is_far && distance_from_axis(poses[i].position, line) > body.bounding_radius + kMaxLineDistance;
   }
   return !is_far && nearest(line, object, poses, kMaxLineDistance) &&

@@ -1,27 +1,31 @@
-#include "frame_report.h"
-
 #include <algorithm>
-#include <memory>
+#include <cmath>
 
-#include "../collision/neighbours.h"
 #include "../rendering/mass_lag.h"
 #include "../response/finger_limits.h"
 #include "grasp.h"
+#include "simulation_impl.h"
 
 namespace mrhi {
 namespace {
 
-void find_contacts(const FrameEnd& end, std::vector<Contact>& contacts) {
-  for (HandMotion& hand : end.hands) hand.move_to(1.0, 1.0);
-  contacts.reserve(end.state.contacts.capacity());  // the finder keeps what it is given, for the next step
-  contacts = end.state.contacts;
-  end.neighbours.begin_step(end.state.bodies, 0.0);
-  end.finder.find(end.hands, end.neighbours, end.state.bodies, 0.0, contacts);
-  for (Contact& contact : contacts) contact.impulse.setZero(), contact.force.setZero();
-  contacts.erase(
-      std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.touching(); }),
-      contacts.end());
-  share_strength(end.strength, contacts);
+/// Tests the sum of its numbers: opposite infinities give NaN.
+bool finite(const Hand& hand) {
+  Vector3 sum = hand.palm.position + hand.wrist;
+  double radii = hand.palm.orientation.coeffs().sum();
+  for (const Capsule& capsule : hand.capsules) {
+    sum += capsule.start + capsule.end;
+    radii += capsule.radius;
+  }
+  return std::isfinite(sum.sum() + radii);
+}
+bool finite(const Contact& contact) {
+  return contact.force.allFinite() && contact.impulse.allFinite() && contact.point.allFinite() &&
+         contact.normal.allFinite() && std::isfinite(contact.depth);
+}
+
+std::string name_of(const Hand& hand) {
+  return "hand " + std::to_string(hand.id);
 }
 
 bool before(const Contact& contact, const ContactKey& key) {
@@ -34,7 +38,7 @@ void add_transfer(const FrameTransfer& transfer, std::vector<Contact>& contacts)
   const std::size_t touching = contacts.size();
   const double rate = transfer.seconds > 0.0 ? 1.0 / transfer.seconds : 0.0;
   for (const Contact& moved : transfer.contacts) {
-    const auto end = contacts.begin() + static_cast<std::ptrdiff_t>(touching);
+    const auto end = contacts.begin() + touching;
     auto same = std::lower_bound(contacts.begin(), end, moved.key, before);
     if (same == end || !(same->key == moved.key)) {
       contacts.push_back(moved);
@@ -51,98 +55,148 @@ void add_transfer(const FrameTransfer& transfer, std::vector<Contact>& contacts)
 }
 
 /// The hand's active or released grip on the object that the body belongs to: the body or its linkage.
-const Grip* grip_on(const FrameEnd& end, std::size_t slot, int body) {
-  const auto object = [&](int part) { return floating_root(end.scene, part).value_or(part); };
-  for (const Grip& grip : end.state.grips)
+const Grip* grip_on(const Scene& scene, const std::vector<Grip>& grips, std::size_t slot, int body) {
+  const auto object = [&](int part) { return floating_root(scene, part).value_or(part); };
+  for (const Grip& grip : grips)
     if (grip.hand == slot && (grip.active || grip.released) && object(grip.body) == object(body))
       return &grip;
   return nullptr;
 }
 
-void update_interactions(const FrameEnd& end, FrameResult& result) {
-  SimulationState& state = end.state;
-  const std::size_t bodies = end.scene.bodies.size();
-  const bool struck = std::any_of(end.transfer.contacts.begin(), end.transfer.contacts.end(),
+}  // namespace
+
+/// Tests the sum of its numbers: opposite infinities give NaN.
+bool is_finite(const BodyState& state) {
+  return std::isfinite(state.pose.position.sum() + state.pose.orientation.coeffs().sum() +
+                       state.linear_momentum.sum() + state.angular_momentum.sum());
+}
+
+void Simulation::Impl::lose_hands_that_are_not_finite(Nanoseconds now) {
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
+    HandTrack& track = state.hands[slot];
+    if (!track.active || finite(track.current)) continue;
+    result.not_finite.push_back(name_of(track.current));
+    end_interactions(slot, now);
+    result.events.push_back({now, EventKind::hand_lost, -1, track.current.id});
+    track = HandTrack();
+    state.offsets[slot] = HandOffset();
+    state.mass_lags[slot] = MassLag();
+  }
+}
+
+/// Shows the tracked hand if the rendered one is not finite.
+void Simulation::Impl::show_hands_that_are_finite() {
+  for (std::size_t i = 0; i < result.rendered.size(); ++i) {
+    if (finite(result.rendered[i].hand)) continue;
+    result.not_finite.push_back("rendered " + name_of(result.tracked[i]));
+    result.rendered[i].hand = result.tracked[i];
+    std::fill(state.offsets.begin(), state.offsets.end(), HandOffset());
+    std::fill(state.mass_lags.begin(), state.mass_lags.end(), MassLag());
+  }
+}
+
+void Simulation::Impl::leave_out_contacts_that_are_not_finite() {
+  const auto end = std::remove_if(result.contacts.begin(), result.contacts.end(), [this](const Contact& c) {
+    if (finite(c)) return false;
+    result.not_finite.push_back("contact with '" + scene.bodies[c.key.body].name + "'");
+    return true;
+  });
+  result.contacts.erase(end, result.contacts.end());
+}
+
+void Simulation::Impl::find_final_contacts() {
+  std::vector<Contact>& contacts = result.contacts;
+  for (HandMotion& hand : hands) hand.move_to(1.0, 1.0);
+  contacts.reserve(state.contacts.capacity());  // the finder keeps what it is given, for the next step
+  contacts = state.contacts;
+  neighbours.begin_step(state.bodies, 0.0);
+  finder.find(hands, neighbours, state.bodies, 0.0, contacts);
+  for (Contact& contact : contacts) contact.impulse.setZero(), contact.force.setZero();
+  contacts.erase(
+      std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.touching(); }),
+      contacts.end());
+  share_strength(configuration.contact.hand, contacts);
+}
+
+void Simulation::Impl::update_interactions() {
+  const std::size_t bodies = scene.bodies.size();
+  const bool struck = std::any_of(transfer.contacts.begin(), transfer.contacts.end(),
                                   [](const Contact& contact) { return !contact.impulse.isZero(0.0); });
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     if (!state.hands[slot].active) continue;
-    const HandTrack& track = end.operators.in_world(slot, state);
+    const HandTrack& track = operators.in_world(slot, state);
     const Eigen::AlignedBox3d hand = box_around(track.current);
     for (std::size_t b = 0; b < bodies; ++b) {
       const int body = static_cast<int>(b);
       const bool near =
-          is_near(hand, state.bodies[b].pose.position, end.scene.bodies[b].bounding_radius + kHoverEnds);
+          is_near(hand, state.bodies[b].pose.position, scene.bodies[b].bounding_radius + kHoverEnds);
       Interaction& interaction = state.interactions[slot * bodies + b];
       const bool may_end = interaction.level != InteractionLevel::none || struck;
-      const bool is_held_fixture = end.scene.bodies[b].fixed && !end.operators.none();
-      if ((end.scene.bodies[b].fixed && !is_held_fixture) || end.scene.bodies[b].is_operator ||
-          (!near && !may_end))
+      const bool is_held_fixture = scene.bodies[b].fixed && !operators.none();
+      if ((scene.bodies[b].fixed && !is_held_fixture) || scene.bodies[b].is_operator || (!near && !may_end))
         continue;
-      const Grip* const grip = grip_on(end, slot, body);
+      const Grip* const grip = grip_on(scene, state.grips, slot, body);
       InteractionLevel seen = InteractionLevel::contact;
       if (grip == nullptr || (grip->active && grip->body != b))
-        seen = seen_level(track.current, static_cast<int>(slot), body, end.finder, end.scene,
-                          state.bodies[b].pose, result.contacts, interaction.level);
+        seen = seen_level(track.current, static_cast<int>(slot), body, finder, scene, state.bodies[b].pose,
+                          result.contacts, interaction.level);
       // A supported object is grasped; of a linkage, the links that the hand touches.
       if (grip != nullptr && grip->active && seen == InteractionLevel::contact)
         seen = InteractionLevel::grasp;
-      if (grasp_of(end.scene, body) == GraspMode::never) seen = std::min(seen, InteractionLevel::contact);
+      if (grasp_of(scene, body) == GraspMode::never) seen = std::min(seen, InteractionLevel::contact);
       update_interaction(seen, {state.time, EventKind::hover_begin, body, track.current.id}, interaction,
                          result.events);
     }
   }
 }
 
-}  // namespace
-
-void report_frame(const FrameEnd& end, FrameResult& result) {
-  find_contacts(end, result.contacts);
-  add_transfer(end.transfer, result.contacts);
-  for (GraspSupport assist : end.transfer.assists) {
-    assist.force /= end.transfer.seconds;
-    result.assists.push_back(assist);
+void Simulation::Impl::report(Nanoseconds stamp) {
+  result.stamp = stamp;
+  operators.end_frame(state);
+  find_final_contacts();
+  add_transfer(transfer, result.contacts);
+  for (GraspSupport support : transfer.assists) {
+    support.force /= transfer.seconds;
+    result.assists.push_back(support);
   }
-  update_interactions(end, result);
-  for (std::size_t slot = 0; slot < end.state.hands.size(); ++slot)
-    if (end.state.hands[slot].active)
-      result.tracked.push_back(end.operators.in_world(slot, end.state).current);
+  update_interactions();
+  for (std::size_t slot = 0; slot < state.hands.size(); ++slot)
+    if (state.hands[slot].active) result.tracked.push_back(operators.in_world(slot, state).current);
+  leave_out_contacts_that_are_not_finite();
+  reported = true;
 }
 
-namespace {
-
 /// The track of the slot displaced by its mass lag, stored in `lagging`; the track itself without lag.
-const HandTrack& lagging_track(std::size_t slot, const Rendering& rendering, const FrameResult& result,
-                               std::unique_ptr<HandTrack>& lagging) {
-  MassLag& lag = rendering.state.mass_lags[slot];
-  const HandTrack& track = rendering.operators.in_world(slot, rendering.state);
-  if (track.appeared || rendering.control_display_ratio <= 1.0) lag = MassLag();
-  if (rendering.control_display_ratio <= 1.0) return track;
+const HandTrack& Simulation::Impl::lagging_track(std::size_t slot, std::unique_ptr<HandTrack>& lagging) {
+  const double ratio = configuration.control_display_ratio;
+  MassLag& lag = state.mass_lags[slot];
+  const HandTrack& track = operators.in_world(slot, state);
+  if (track.appeared || ratio <= 1.0) lag = MassLag();
+  if (ratio <= 1.0) return track;
   const MassLag before = lag;
-  const Nanoseconds now = rendering.state.time;
+  const Nanoseconds now = state.time;
   MovedMass moved;
   if (before.stamp != 0 && now > before.stamp)
-    moved = moved_mass(static_cast<int>(slot), to_seconds(now - before.stamp), rendering.scene,
-                       rendering.gravity, result);
-  advance_mass_lag(rendering.control_display_ratio, moved, now, lag);
+    moved = moved_mass(static_cast<int>(slot), to_seconds(now - before.stamp), scene, gravity, result);
+  advance_mass_lag(ratio, moved, now, lag);
   if (before.zero() && lag.zero()) return track;
   if (!lagging) lagging = std::make_unique<HandTrack>();
   lag_behind(before, lag, track, *lagging);
   return *lagging;
 }
 
-}  // namespace
-
-void render_hands(const Rendering& rendering, FrameResult& result) {
-  SimulationState& state = rendering.state;
+void Simulation::Impl::render() {
   std::unique_ptr<HandTrack> lagging;  // large: made only when a hand lags
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     if (!state.hands[slot].active) continue;
-    const HandTrack& track = lagging_track(slot, rendering, result, lagging);
+    const HandTrack& track = lagging_track(slot, lagging);
     result.rendered.emplace_back();
-    rendering.renderer.render(track, static_cast<int>(slot), state.time, state.bodies, result.contacts,
-                              state.interactions.data() + slot * state.bodies.size(), state.offsets[slot],
-                              result.rendered.back());
+    HandFrameView view{track,           static_cast<int>(slot),
+                       state.time,      state.bodies,
+                       result.contacts, state.interactions.data() + slot * state.bodies.size()};
+    renderer.render(view, state.offsets[slot], result.rendered.back());
   }
+  show_hands_that_are_finite();
 }
 
 void FrameTransfer::add(const SimulationState& after, double step) {
@@ -171,11 +225,11 @@ void FrameTransfer::add(const SimulationState& after, double step) {
   }
 }
 
-void end_interactions(std::size_t slot, Nanoseconds now, SimulationState& state, std::vector<Event>& events) {
+void Simulation::Impl::end_interactions(std::size_t slot, Nanoseconds now) {
   const std::size_t bodies = state.bodies.size();
   for (std::size_t b = 0; b < bodies; ++b) {
     end_interaction({now, EventKind::hover_end, static_cast<int>(b), state.hands[slot].current.id},
-                    state.interactions[slot * bodies + b], events);
+                    state.interactions[slot * bodies + b], result.events);
   }
 }
 

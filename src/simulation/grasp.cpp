@@ -68,7 +68,7 @@ bool grasps_whole(const Scene& scene, int slot, int body, const std::vector<Cont
 bool is_near(const Hand& hand, int body, const ContactFinder& finder, const Body& shape_of, const Pose& pose,
              double distance) {
   for (int c = 0; c < kCapsules; ++c) {
-    const Capsule& capsule = hand.capsules[static_cast<std::size_t>(c)];
+    const Capsule& capsule = hand.capsules[c];
     if (capsule.radius <= 0.0) continue;
     const double reach = shape_of.bounding_radius + capsule.radius + distance;
     if ((capsule.centre() - pose.position).norm() > reach + 0.5 * (capsule.end - capsule.start).norm())
@@ -95,7 +95,7 @@ InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactF
     return InteractionLevel::grasp;
   if (load.capsules >= 1 || load.struck) return InteractionLevel::contact;
   const double distance = before == InteractionLevel::none ? kHoverBegins : kHoverEnds;
-  const Body& shape_of = scene.bodies[static_cast<std::size_t>(body)];
+  const Body& shape_of = scene.bodies[body];
   return is_near(hand, body, finder, shape_of, body_pose, distance) ? InteractionLevel::hover
                                                                     : InteractionLevel::none;
 }

@@ -15,7 +15,7 @@ constexpr double kMaxOpposingAngle = 1.5;
 
 GraspMode resolved_mode(const Scene& scene, int body, const Configuration& configuration) {
   const bool is_implicit = configuration.contact_model == ContactModelKind::implicit;
-  if (!is_implicit || scene.bodies[static_cast<std::size_t>(body)].fixed) return GraspMode::free;
+  if (!is_implicit || scene.bodies[body].fixed) return GraspMode::free;
   const GraspMode mode = grasp_of(scene, body);
   if (mode != GraspMode::parameter) return mode;
   return configuration.contact.grasp_assist ? GraspMode::assist : GraspMode::free;
@@ -28,7 +28,7 @@ GraspObjects::GraspObjects(const Scene& scene, const Configuration& configuratio
   std::vector<std::size_t> index_by_root(scene.bodies.size(), kNone);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto body = static_cast<int>(b);
-    std::size_t& index = index_by_root[static_cast<std::size_t>(floating_root(scene, body).value_or(body))];
+    std::size_t& index = index_by_root[floating_root(scene, body).value_or(body)];
     if (index == kNone) {
       index = objects_.size();
       objects_.emplace_back();

@@ -7,36 +7,28 @@ namespace {
 constexpr Nanoseconds kGraspRiseDelay = 50'000'000, kGraspFallDelay = 60'000'000;
 constexpr Nanoseconds kContactFallDelay = 30'000'000;
 
+/// How a level begins and ends, in the order of InteractionLevel.
+struct LevelChange {
+  EventKind begin, end;
+  Nanoseconds rise_delay, fall_delay;
+};
+constexpr LevelChange kChanges[] = {
+    {},
+    {EventKind::hover_begin, EventKind::hover_end, 0, 0},
+    {EventKind::contact_begin, EventKind::contact_end, 0, kContactFallDelay},
+    {EventKind::grasp_begin, EventKind::grasp_end, kGraspRiseDelay, kGraspFallDelay}};
+
+const LevelChange& change_of(InteractionLevel level) {
+  return kChanges[static_cast<std::size_t>(level)];
+}
 InteractionLevel next(InteractionLevel level) {
   return static_cast<InteractionLevel>(static_cast<int>(level) + 1);
 }
-InteractionLevel previous(InteractionLevel level) {
-  return static_cast<InteractionLevel>(static_cast<int>(level) - 1);
-}
-
-EventKind begin_of(InteractionLevel level) {
-  if (level == InteractionLevel::hover) return EventKind::hover_begin;
-  return level == InteractionLevel::contact ? EventKind::contact_begin : EventKind::grasp_begin;
-}
-
-EventKind end_of(InteractionLevel level) {
-  if (level == InteractionLevel::hover) return EventKind::hover_end;
-  return level == InteractionLevel::contact ? EventKind::contact_end : EventKind::grasp_end;
-}
-
-Nanoseconds rise_delay(InteractionLevel level) {
-  return level == InteractionLevel::grasp ? kGraspRiseDelay : 0;
-}
-
-Nanoseconds fall_delay(InteractionLevel level) {
-  if (level == InteractionLevel::grasp) return kGraspFallDelay;
-  return level == InteractionLevel::contact ? kContactFallDelay : 0;
-}
 
 void fall(Event event, Interaction& interaction, std::vector<Event>& events) {
-  event.kind = end_of(interaction.level);
+  event.kind = change_of(interaction.level).end;
   events.push_back(event);
-  interaction.level = previous(interaction.level);
+  interaction.level = static_cast<InteractionLevel>(static_cast<int>(interaction.level) - 1);
 }
 
 }  // namespace
@@ -48,16 +40,16 @@ void update_interaction(InteractionLevel seen, Event event, Interaction& interac
     return;
   }
   const Nanoseconds lasted = event.stamp - interaction.agreed;
-  while (seen > interaction.level && lasted >= rise_delay(next(interaction.level))) {
+  while (seen > interaction.level && lasted >= change_of(next(interaction.level)).rise_delay) {
     interaction.level = next(interaction.level);
-    event.kind = begin_of(interaction.level);
+    event.kind = change_of(interaction.level).begin;
     events.push_back(event);
     if (next(interaction.level) == InteractionLevel::grasp) {
       interaction.agreed = event.stamp;
       break;
     }
   }
-  while (seen < interaction.level && lasted >= fall_delay(interaction.level))
+  while (seen < interaction.level && lasted >= change_of(interaction.level).fall_delay)
     fall(event, interaction, events);
 }
 

@@ -15,12 +15,10 @@ bool IsolatedBodies::begin_frame(const Neighbours& neighbours, double seconds, c
   };
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     for (const NearBody& near : neighbours.near_hand(static_cast<int>(slot))) {
-      const auto b = static_cast<std::size_t>(near.body);
-      if (neighbours.may_meet_hand(b, state.bodies[b], seconds)) meets(b);
+      if (neighbours.may_meet_hand(near.body, state.bodies[near.body], seconds)) meets(near.body);
     }
   }
-  for (const auto& [first, second] : neighbours.pairs()) {
-    const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
+  for (const auto& [a, b] : neighbours.pairs()) {
     const bool asleep = state.asleep[b] && (state.asleep[a] || scene_.bodies[a].fixed);
     if (!asleep && neighbours.may_meet(a, b, state.bodies, seconds)) meets(a), meets(b);
   }
@@ -41,12 +39,11 @@ void IsolatedBodies::clear() {
 void IsolatedBodies::join(const Neighbours& neighbours, double passed, double step, const Vector3& gravity,
                           SimulationState& state) {
   if (!any_) return;
-  for (const auto& [first, second] : neighbours.pairs()) {
-    const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
+  for (const auto& [a, b] : neighbours.pairs()) {
     if (isolated_[a] == isolated_[b]) continue;  // two isolated bodies cannot meet in the frame
     // The isolated body is still where the frame began.
     if (!neighbours.may_meet(a, b, state.bodies, passed + step)) continue;
-    const std::size_t joins = isolated_[a] ? a : b;
+    const int joins = isolated_[a] ? a : b;
     free_flight(scene_.bodies[joins], gravity, passed, state.bodies[joins]);
     isolated_[joins] = 0;
   }

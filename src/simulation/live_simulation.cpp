@@ -74,8 +74,7 @@ std::string names_of(const Scene& scene, bool free_only) {
 
 std::size_t known_body(const Scene& scene, const std::string& name, bool free_only) {
   const std::optional<int> found = find_body(scene, name);
-  if (found && !(free_only && scene.bodies[static_cast<std::size_t>(*found)].fixed))
-    return static_cast<std::size_t>(*found);
+  if (found && !(free_only && scene.bodies[*found].fixed)) return static_cast<std::size_t>(*found);
   throw std::invalid_argument("no object '" + text::one_line(name, 60) +
                               "'; allowed: " + names_of(scene, free_only));
 }
@@ -83,8 +82,7 @@ std::size_t known_body(const Scene& scene, const std::string& name, bool free_on
 void check_no_joint(const Scene& scene, int body) {
   for (const Joint& joint : scene.joints) {
     if (joint.child != body && joint.parent != body) continue;
-    throw std::invalid_argument("'" + scene.bodies[static_cast<std::size_t>(body)].name +
-                                "' cannot be placed: joint '" + joint.name +
+    throw std::invalid_argument("'" + scene.bodies[body].name + "' cannot be placed: joint '" + joint.name +
                                 "' holds it; allowed: objects without joints");
   }
 }
@@ -215,12 +213,11 @@ void LiveSimulation::restrain(bool on) {
     const Operator& op = scene.operators[o];
     if (!op.restraint) continue;
     any = true;
-    const auto place = [&](int body) { return state.bodies[static_cast<std::size_t>(body)].pose.position; };
+    const auto place = [&](int body) { return state.bodies[body].pose.position; };
     const double distance = (place(op.body) - place(*op.restraint)).norm();
     if (on && distance > op.reach)
-      throw std::invalid_argument("'" + scene.bodies[static_cast<std::size_t>(op.body)].name + "' is " +
-                                  text::number(distance) + " m from '" +
-                                  scene.bodies[static_cast<std::size_t>(*op.restraint)].name +
+      throw std::invalid_argument("'" + scene.bodies[op.body].name + "' is " + text::number(distance) +
+                                  " m from '" + scene.bodies[*op.restraint].name +
                                   "'; allowed: at most its reach of " + text::number(op.reach) + " m");
     state.restrained[o] = on;
   }

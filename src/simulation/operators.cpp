@@ -36,9 +36,8 @@ Hand placed(const Pose& frame, const Hand& hand) {
 
 }  // namespace
 
-Operators::Operators(const Scene& scene, const ContactConfiguration& configuration)
+Operators::Operators(const Scene& scene)
     : scene_(scene),
-      configuration_(configuration),
       carriers_(scene.operators.size()),
       start_(scene.operators.size()),
       courses_(scene.operators.size()),
@@ -59,7 +58,7 @@ Pose Operators::frame(const Operator& op, const SimulationState& state) const {
 }
 
 const CarrierMotion* Operators::carrier(std::size_t slot) const {
-  return none() ? nullptr : &carriers_[static_cast<std::size_t>(owners_[slot])];
+  return none() ? nullptr : &carriers_[owners_[slot]];
 }
 
 Pose Operators::in_hands_frame(std::size_t slot, std::size_t body, const SimulationState& state) const {
@@ -88,7 +87,7 @@ void Operators::begin_frame(double seconds, const SimulationState& state) {
     const HandTrack& track = state.hands[slot];
     if (!track.active) continue;
     owners_[slot] = static_cast<int>(track.current.id % carriers_.size());
-    bodies_of_hands_[slot] = scene_.operators[static_cast<std::size_t>(owners_[slot])].body;
+    bodies_of_hands_[slot] = scene_.operators[owners_[slot]].body;
   }
   begin_step(seconds, state);
   for (std::size_t o = 0; o < carriers_.size(); ++o) start_[o] = frame(scene_.operators[o], state);
@@ -98,15 +97,9 @@ void Operators::begin_frame(double seconds, const SimulationState& state) {
 void Operators::foresee(double seconds) {
   const double allowed = std::min(kMaxDeparture, kMaxDepartureRate * seconds * seconds);
   for (std::size_t o = 0; o < carriers_.size(); ++o) {
-    const CarrierMotion& now = carriers_[o];
-    courses_[o] = {now.twist, 0.0, seconds, allowed};
-    carried_[o] = {now.rotation,
-                   now.origin + 0.5 * seconds * now.twist.linear,
-                   now.centre,
-                   now.twist.linear.norm(),
-                   now.twist.angular.norm(),
-                   seconds,
-                   allowed};
+    courses_[o] = {carriers_[o].twist, 0.0, seconds, allowed};
+    carried_[o] = {carriers_[o], seconds, allowed};
+    carried_[o].motion.origin += 0.5 * seconds * carriers_[o].twist.linear;
   }
 }
 
@@ -119,12 +112,8 @@ bool Operators::begin_step(double left, const SimulationState& state) {
     const Body& body = scene_.bodies[index];
     const BodyState& now = state.bodies[index];
     CarrierMotion& carrier = carriers_[o];
-    carrier.rotation = now.pose.orientation.toRotationMatrix();
-    carrier.centre = now.pose.position;
-    carrier.origin = carrier.centre + carrier.rotation * body.link_in_body.position;
-    carrier.twist.linear = now.linear_momentum / body.mass;
-    const Vector3 in_body = carrier.rotation.transpose() * now.angular_momentum;
-    carrier.twist.angular = carrier.rotation * (body.inverse_inertia * in_body);
+    const MovingBody moving(body, now, Vector3::Zero());
+    carrier = {moving.rotation, moving.to_world(body.link_in_body.position), now.pose.position, moving.twist};
     Course& course = courses_[o];
     const double rate = (carrier.twist.linear - course.foreseen.linear).norm() +
                         kMaxReach * (carrier.twist.angular - course.foreseen.angular).norm();
@@ -146,7 +135,7 @@ void Operators::begin_contacts(SimulationState& state) {
     if (contact.key.body != noted) note_momenta(noted = contact.key.body, state);
     if (contact.struck || contact.ignored) continue;
     const auto o = static_cast<std::size_t>(owners_[contact.key.hand]);
-    const Body& body = scene_.bodies[static_cast<std::size_t>(scene_.operators[o].body)];
+    const Body& body = scene_.bodies[scene_.operators[o].body];
     const Vector3 across =
         carriers_[o].rotation.transpose() * (contact.point - carriers_[o].centre).cross(contact.normal);
     contact.carrier_inverse_mass = 1.0 / body.mass + across.dot(body.inverse_inertia * across);
@@ -192,7 +181,7 @@ Twist Operators::react(const ContactStep& step, int body) const {
     impulse.linear += given;
     impulse.angular += now.pose.position.cross(given) + now.angular_momentum - touched.angular_momentum;
   }
-  const Vector3& centre = step.bodies[static_cast<std::size_t>(body)].pose.position;
+  const Vector3& centre = step.bodies[body].pose.position;
   if (by_momentum) return {-impulse.linear, centre.cross(impulse.linear) - impulse.angular};
   impulse = Twist();
   std::size_t last = scene_.bodies.size();
@@ -226,14 +215,12 @@ Twist Operators::react(const ContactStep& step, int body) const {
 }
 
 void Operators::touch_fixtures(ContactStep& step, int body) {
+  step.bodies[body].pushed = Twist();
+  if (!touches_fixture_) return;
   on_fixtures_.clear();
-  std::size_t owner = 0;
-  if (!touches_fixture_) {
-    step.bodies[static_cast<std::size_t>(body)].pushed = Twist();
-    return;
-  }
+  int owner = 0;
   for (Contact& contact : step.contacts) {
-    const auto o = static_cast<std::size_t>(owners_[contact.key.hand]);
+    const int o = owners_[contact.key.hand];
     if (contact.ignored || !scene_.bodies[contact.key.body].fixed || scene_.operators[o].body != body)
       continue;
     contact.force.setZero();
@@ -241,11 +228,8 @@ void Operators::touch_fixtures(ContactStep& step, int body) {
     on_fixtures_.push_back(&contact);
     owner = o;
   }
-  BodyState& state = step.bodies[static_cast<std::size_t>(body)];
-  state.pushed = Twist();
   if (on_fixtures_.empty()) return;
-  problem_.begin_operator(step, static_cast<std::size_t>(body), on_fixtures_, carriers_[owner].twist,
-                          configuration_);
+  problem_.begin_operator(step, body, on_fixtures_, carriers_[owner].twist);
   if (!problem_.solve()) problem_.evaluate(true);  // the velocity has moved on since
   if (problem_.scale() <= 0.0) return;
   problem_.finish_operator(step, on_fixtures_);
@@ -260,7 +244,7 @@ void Operators::pull(ContactStep& step, const Tether& tether) const {
   const Body& body = scene_.bodies[index];
   BodyState& state = step.bodies[index];
   const Vector3 end = state.pose * tether.at;
-  const Vector3 apart = end - step.bodies[static_cast<std::size_t>(tether.fixture)].pose * tether.anchor;
+  const Vector3 apart = end - step.bodies[tether.fixture].pose * tether.anchor;
   const double distance = apart.norm();
   if (distance <= 0.0) return;
   const Vector3 along = apart / distance, arm = end - state.pose.position;
@@ -278,7 +262,7 @@ void Operators::pull(ContactStep& step, const Tether& tether) const {
 void Operators::respond(ContactStep& step, const std::vector<char>& restrained) {
   for (std::size_t o = 0; o < scene_.operators.size(); ++o) {
     const int body = scene_.operators[o].body;
-    BodyState& state = step.bodies[static_cast<std::size_t>(body)];
+    BodyState& state = step.bodies[body];
     const Twist given = react(step, body);
     state.linear_momentum += given.linear;
     state.angular_momentum += given.angular;

@@ -14,8 +14,8 @@ namespace mrhi {
 /// to objects and fixtures. The state has a body for each operator; everything else here lasts one frame.
 class Operators {
  public:
-  /// Keeps references.
-  Operators(const Scene& scene, const ContactConfiguration& configuration);
+  /// Keeps a reference.
+  explicit Operators(const Scene& scene);
 
   bool none() const { return scene_.operators.empty(); }
 
@@ -28,9 +28,7 @@ class Operators {
   /// motion.
   void foresee(double seconds);
   /// Predicted frame of a hand, for Neighbours; null for a hand that is tracked in world.
-  const CarriedFrame* carried(std::size_t slot) const {
-    return none() ? nullptr : &carried_[static_cast<std::size_t>(owners_[slot])];
-  }
+  const CarriedFrame* carried(std::size_t slot) const { return none() ? nullptr : &carried_[owners_[slot]]; }
 
   /// Motion of the operator of the hand in a slot; null for a hand that is tracked in world.
   const CarrierMotion* carrier(std::size_t slot) const;
@@ -60,7 +58,6 @@ class Operators {
   void pull(ContactStep& step, const Tether& tether) const;
 
   const Scene& scene_;
-  const ContactConfiguration configuration_;
   IslandProblem problem_;
   std::vector<Contact*> on_fixtures_;
 

@@ -72,7 +72,7 @@ void carry_joints(const SimulationState& state, const Scene& before, const Scene
   next.joints.clear();
   for (const Joint& joint : after.joints) {
     const std::optional<int> was = find_joint(before, joint.name);
-    next.joints.push_back(was ? state.joints[static_cast<std::size_t>(*was)] : start_state(joint));
+    next.joints.push_back(was ? state.joints[*was] : start_state(joint));
   }
 }
 
@@ -82,7 +82,7 @@ void carry_restraints(const SimulationState& state, const Scene& before, const S
   next.restrained.assign(after.operators.size(), 0);
   for (std::size_t o = 0; o < after.operators.size(); ++o) {
     const auto name = [](const Scene& scene, const Operator& op) -> const std::string& {
-      return scene.bodies[static_cast<std::size_t>(op.body)].name;
+      return scene.bodies[op.body].name;
     };
     for (std::size_t was = 0; was < before.operators.size() && after.operators[o].restraint; ++was) {
       if (name(before, before.operators[was]) == name(after, after.operators[o]))
@@ -103,8 +103,8 @@ SimulationState carried_over(const SimulationState& state, const Scene& before, 
   std::vector<char> was_there(after.bodies.size(), 0);
   for (std::size_t b = 0; b < places.size(); ++b) {
     if (!places[b]) continue;
-    next.bodies[static_cast<std::size_t>(*places[b])] = state.bodies[b];
-    was_there[static_cast<std::size_t>(*places[b])] = 1;
+    next.bodies[*places[b]] = state.bodies[b];
+    was_there[*places[b]] = 1;
   }
   carry_joints(state, before, after, next);
   carry_restraints(state, before, after, next);

@@ -8,7 +8,6 @@
 #include "../joints/joint_law.h"
 #include "../text/text.h"
 #include "../tracking/hand_filter.h"
-#include "frame_report.h"
 #include "scene_change.h"
 #include "simulation_impl.h"
 
@@ -58,7 +57,7 @@ Simulation::Impl::Impl(Scene scene_in, const Configuration& configuration_in)
       neighbours(scene),
       finder(scene, geometry, gravity, refinements(configuration)),
       body_finder(scene, geometry, gravity),
-      operators(scene, refinements(configuration)),
+      operators(scene),
       isolated(scene),
       sleeping(scene, configuration.contact.sleep),
       assist(scene, finder, operators, configuration),

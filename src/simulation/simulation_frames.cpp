@@ -1,7 +1,8 @@
 #include <algorithm>
 
+#include "../integration/free_flight.h"
+#include "../joints/linkage.h"
 #include "../tracking/hand_filter.h"
-#include "frame_report.h"
 #include "simulation_impl.h"
 
 namespace mrhi {
@@ -60,10 +61,10 @@ void Simulation::Impl::begin_hands(double seconds) {
   hands.clear();
   operators.begin_frame(seconds > 0.0 ? seconds : to_seconds(step_length), state);
   for (int slot = 0; slot < kMaxHands; ++slot) {
-    const HandTrack& track = state.hands[static_cast<std::size_t>(slot)];
+    const HandTrack& track = state.hands[slot];
     if (!track.active || track.appeared) continue;
     hands.emplace_back(track, slot, seconds);
-    hands.back().carry(operators.carrier(static_cast<std::size_t>(slot)));
+    hands.back().carry(operators.carrier(slot));
   }
   list_near_hands();
 }
@@ -97,24 +98,91 @@ void Simulation::Impl::lose_hands(Nanoseconds now) {
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     const HandTrack& track = state.hands[slot];
     const bool unseen = to_seconds(now - track.last_seen) > configuration.tracking.hold_time;
-    if (track.active && unseen) end_interactions(slot, now, state, result.events);
+    if (track.active && unseen) end_interactions(slot, now);
   }
   lose_unseen_hands(now, configuration.tracking.hold_time, state.hands, result.events);
   assist.lose_hands(now, state);
 }
 
-void Simulation::Impl::report(Nanoseconds stamp) {
-  result.stamp = stamp;
-  operators.end_frame(state);
-  report_frame({scene, hands, neighbours, finder, operators, transfer, configuration.contact.hand, state},
-               result);
-  leave_out_contacts_that_are_not_finite();
-  reported = true;
+/// Limit of the change of a body's velocity by hands within the step [m/s]: to the hand's velocity, and by
+/// the springs that hold it if they release it.
+double Simulation::Impl::driven(double step) const {
+  double limit = 0.0;
+  if (neighbours.pairs().empty()) return limit;  // no body can hit another
+  const auto release_velocity = [&](std::size_t body, const Vector3& force) {
+    return step * force.norm() / scene.bodies[body].mass;
+  };
+  for (const Contact& contact : state.contacts) {
+    if (scene.bodies[contact.key.body].fixed) continue;
+    limit = std::max(limit, contact.hand_velocity.norm() + release_velocity(contact.key.body, contact.force));
+  }
+  for (const Grip& grip : state.grips) {
+    if (!grip.active) continue;
+    for (const Vector3& velocity : grip.velocity)
+      limit = std::max(limit, velocity.norm() + release_velocity(grip.body, grip.force));
+  }
+  return limit;
 }
 
-void Simulation::Impl::render() {
-  render_hands({scene, renderer, operators, gravity, configuration.control_display_ratio, state}, result);
-  show_hands_that_are_finite();
+/// Runs one step that begins at `fraction` of the frame.
+void Simulation::Impl::advance_step(double fraction, double step) {
+  const double until = frame_seconds() > 0.0 ? std::min(1.0, fraction + step / frame_seconds()) : fraction;
+  if (!operators.none()) {
+    const double left = frame_seconds() > 0.0 ? (1.0 - fraction) * frame_seconds() : step;
+    if (!operators.begin_step(left, state)) {
+      operators.foresee(left);
+      list_near_hands();
+    }
+  }
+  for (HandMotion& hand : hands) hand.move_to(fraction, until);
+  neighbours.begin_step(state.bodies, step);
+  isolated.join(neighbours, fraction * frame_seconds(), step, gravity, state);
+  sleeping.wake(neighbours, step, state);
+  end_stage(Stage::neighbours);
+  finder.find(hands, neighbours, state.bodies, step, state.contacts);
+  assist.begin_step(fraction, step, state);
+  if (!operators.none()) operators.begin_contacts(state);
+  end_stage(Stage::hand_contacts);
+  body_finder.find(neighbours, state.bodies, state.asleep, step, driven(step), state.body_contacts);
+  end_stage(Stage::body_contacts);
+  changes.reset(scene.bodies.size());
+  ContactStep contact_step{
+      scene,        gravity, step,        configuration.contact,      state.contacts, state.body_contacts,
+      state.bodies, changes, state.grips, operators.bodies_of_hands()};
+  model->respond(contact_step);
+  if (!may_isolate()) operators.respond(contact_step, state.restrained);
+  end_stage(Stage::response);
+  transfer.add(state, step);
+  const bool last = steps_done + 1 >= steps;
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    state.bodies[b].appeared = false;
+    if (state.asleep[b] || (isolated[b] && !last)) continue;
+    free_flight(scene.bodies[b], changes.solved(b) ? Vector3::Zero() : gravity,
+                isolated[b] ? frame_seconds() : step, state.bodies[b]);
+  }
+  changes.delay_impacts(scene.bodies, gravity, step, state.bodies);
+  sleeping.settle(neighbours, step, state);
+  keep_in_bounds();
+  end_stage(Stage::flight);
+}
+
+void Simulation::Impl::keep_in_bounds() {
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const Vector3& p = state.bodies[b].pose.position;
+    const bool sound = is_finite(state.bodies[b]);
+    if (sound && (p.array() >= scene.bounds.min.array()).all() &&
+        (p.array() <= scene.bounds.max.array()).all())
+      continue;
+    const Body& body = scene.bodies[b];  // read late: in large scenes it is not in the cache
+    if (body.fixed) continue;
+    if (!sound) result.not_finite.push_back("object '" + body.name + "'");
+    put_back(b, scene, state);
+    if (body.is_operator) {
+      mark_hands_appeared(state);
+      hands.clear();
+    }
+    result.events.push_back({state.time, EventKind::out_of_bounds, static_cast<int>(b), 0});
+  }
 }
 
 }  // namespace mrhi

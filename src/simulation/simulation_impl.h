@@ -9,9 +9,8 @@
 #include "../collision/contact_finder.h"
 #include "../collision/neighbours.h"
 #include "../collision/scene_geometry.h"
-#include "../rendering/hand_renderer.h"
+#include "../rendering/renderer.h"
 #include "../response/contact_step.h"
-#include "frame_report.h"
 #include "grasp_assist.h"
 #include "isolated_bodies.h"
 #include "mr_hand_interaction/simulation.h"
@@ -20,8 +19,20 @@
 
 namespace mrhi {
 
-/// Frames come in and are divided into steps (simulation_frames.cpp); a step runs through the stages
-/// (simulation_step.cpp).
+/// Momentum transferred by contacts and grasp assist since the frame before; `force` is the sum of force
+/// times step [N s].
+struct FrameTransfer {
+  std::vector<Contact> contacts;      ///< sorted by key
+  std::vector<GraspSupport> assists;  ///< sorted by hand and body
+  double seconds = 0.0;               ///< time of the steps
+
+  void clear() { contacts.clear(), assists.clear(), seconds = 0.0; }
+  /// Adds the transfer of a step of `step` seconds.
+  void add(const SimulationState& after, double step);
+};
+
+/// Frames come in, are divided into steps, and each step runs through the stages (simulation_frames.cpp);
+/// then the frame's results are made (frame_report.cpp).
 struct Simulation::Impl {
   Impl(Scene scene_in, const Configuration& configuration_in);
 
@@ -36,10 +47,18 @@ struct Simulation::Impl {
   void list_near_hands();
   void pass_without_frames(Nanoseconds until);
   void lose_hands(Nanoseconds now);
+  /// Contacts as they are at the frame's end, with the mean of their forces and the sum of their impulses
+  /// since the frame before; contacts that have ended since then; then the events that follow from them, and
+  /// the tracked hands.
   void report(Nanoseconds stamp);
+  void find_final_contacts();
+  void update_interactions();
+  /// Ends all interactions of a hand that is about to be lost.
+  void end_interactions(std::size_t slot, Nanoseconds now);
   void render();
+  const HandTrack& lagging_track(std::size_t slot, std::unique_ptr<HandTrack>& lagging);
 
-  // Values that are not finite are removed (not_finite.cpp), and their owners named in the result.
+  // Values that are not finite are removed, and their owners named in the result.
   void lose_hands_that_are_not_finite(Nanoseconds now);
   void leave_out_contacts_that_are_not_finite();
   void show_hands_that_are_finite();

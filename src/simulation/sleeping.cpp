@@ -136,8 +136,7 @@ bool Sleeping::clear_connected(const Neighbours& neighbours, double step,
       flags[a] = flags[b] = 0;
       more = any = true;
     };
-    for (const auto& [first, second] : neighbours.pairs()) {
-      const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
+    for (const auto& [a, b] : neighbours.pairs()) {
       if (!scene_.bodies[a].fixed && differ(a, b) && neighbours.may_meet(a, b, bodies, step)) clear(a, b);
     }
     for (const Joint& joint : scene_.joints) {

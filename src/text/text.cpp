@@ -3,7 +3,10 @@
 #include <locale.h>
 #include <stdlib.h>
 
+#include <array>
 #include <cctype>
+#include <cstdarg>
+#include <cstdio>
 #include <locale>
 #include <sstream>
 
@@ -33,6 +36,15 @@ std::string exact(double value) {
   int digits = 6;
   while (digits < kMaxDigits && to_number(with_digits(value, digits)) != value) ++digits;
   return with_digits(value, digits);
+}
+
+std::string format(const char* form, ...) {
+  std::array<char, 1024> text{};
+  va_list values;
+  va_start(values, form);
+  std::vsnprintf(text.data(), text.size(), form, values);
+  va_end(values);
+  return text.data();
 }
 
 std::optional<double> to_number(const std::string& text) {

@@ -258,7 +258,7 @@ Hand slowed(const Hand& before, const Hand& tracked, double speed, double elapse
   for (int finger = 0; finger < kFingers; ++finger) {
     Vector3 moved = Vector3::Zero();  // displacement of the next joint from its tracked position
     for (int bone = 1; bone < kBonesPerFinger; ++bone) {
-      const auto c = static_cast<std::size_t>(capsule_index(finger, bone));
+      const int c = capsule_index(finger, bone);
       Capsule& capsule = hand.capsules[c];
       const Capsule& last = before.capsules[c];
       if (capsule.radius <= 0.0 || last.radius <= 0.0) continue;

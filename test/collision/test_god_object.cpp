@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "collision/contact_finder.h"
-#include "collision/god_object.h"
 #include "response/impact.h"
 #include "support/fixtures.h"
 

@@ -1,4 +1,4 @@
-#include "collision/sweep.h"
+#include "collision/step_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "response/penetration_force.h"
+#include "response/penetration_model.h"
 #include "support/fixtures.h"
 #include "support/one_side_leaves.h"
 

@@ -95,7 +95,8 @@ struct Blow {
     StepChanges changes;
     changes.reset(1);
     std::vector<Grip> grips;
-    ContactStep step{scene, scene.gravity, 0.001, contacts, none, bodies, changes, grips};
+    const ContactConfiguration configuration;
+    ContactStep step{scene, scene.gravity, 0.001, configuration, contacts, none, bodies, changes, grips};
     Islands islands;
     islands.build(step);
     ImpactSolver().resolve(step, islands, friction);

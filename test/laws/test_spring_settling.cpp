@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "response/contact_step.h"
-#include "response/penetration_force.h"
+#include "response/penetration_model.h"
 #include "response/spring_contact.h"
 #include "support/fixtures.h"
 
@@ -38,8 +38,9 @@ class Touch {
     ContactConfiguration configuration;
     configuration.damping = false;
     configuration.hand = HandStrength();
-    ContactStep step{scene_, gravity_, kStep, contacts_, body_contacts_, bodies_, changes_, grips_};
-    make_spring(step, configuration, contact, spring);
+    ContactStep step{scene_,         gravity_, kStep,    configuration, contacts_,
+                     body_contacts_, bodies_,  changes_, grips_};
+    make_spring(step, contact, spring);
     spring.spring.respond(triple(Vector3::Zero()), 0.0, true, spring.response);
     settle(step, spring, contact);
   }

@@ -23,11 +23,10 @@ RenderedHand pressing(const Hand& hand, const std::vector<int>& touched, double 
 }
 
 std::vector<Rgb> colours_of(const RenderedHand& rendered) {
-  static const SkinPaint paint(Skin::human());
   SkinSurface surface;
   EXPECT_TRUE(Skin::human().pose(rendered.hand, surface));
   std::vector<Rgb> colours;
-  paint.paint(rendered, surface, colours);
+  paint_skin(Skin::human(), rendered, surface, colours);
   return colours;
 }
 

@@ -13,11 +13,6 @@
 
 namespace mrhi {
 
-class BodyMarkers;
-class HandMarkers;
-class ImpactMarkers;
-class ShadowMarkers;
-
 std_msgs::ColorRGBA color(double r, double g, double b, double a = 1.0);
 
 /// Style of the rendered view. Colours of Okabe & Ito (2008), which colour-blind people can distinguish.
@@ -72,10 +67,8 @@ class Markers {
   const std::string caption_;
   PictureStyle style_;
   const Vector3 text_place_;
-  std::unique_ptr<HandMarkers> hands_;
-  std::unique_ptr<BodyMarkers> bodies_;
-  std::unique_ptr<ShadowMarkers> shadows_;
-  std::unique_ptr<ImpactMarkers> impacts_;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;  // makers of the layers
   std::string text_;
   std::vector<Key> shown_, now_;  // transient markers, sorted
   ros::Time all_sent_;

@@ -17,7 +17,7 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include <QColor>
-#include <cstdio>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "../../simulation/contact_phase.h"
+#include "../../text/text.h"
 #include "../scene_view.h"
 #include "mr_hand_interaction/ros/markers.h"
 #include "scene_objects.h"
@@ -41,20 +42,15 @@ constexpr double kEyeMoved = 1e-4;     // [m]
 const Rgb kSkin(0.91f, 0.73f, 0.62f);  // base of the skin's tone
 
 QColor to_qt(const std_msgs::ColorRGBA& c) {
-  return QColor::fromRgbF(static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b));
+  return QColor::fromRgbF(c.r, c.g, c.b);
 }
 QColor to_qt(const Rgb& c) {
-  return to_qt(color(static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])));
+  return to_qt(color(c[0], c[1], c[2]));
 }
 
 Rgb to_rgb(const rviz::ColorProperty& property) {
   const QColor colour = property.getColor();
   return Eigen::Array3d(colour.redF(), colour.greenF(), colour.blueF()).cast<float>();
-}
-
-void set_colour(const rviz::ColorProperty& property, std_msgs::ColorRGBA& colour) {
-  const Rgb rgb = to_rgb(property);
-  colour.r = rgb[0], colour.g = rgb[1], colour.b = rgb[2];
 }
 
 }  // namespace
@@ -110,17 +106,15 @@ class InteractionDisplay : public rviz::Display {
 
  private:
   const Mesh* mesh_of_file(const std::string& uri) const {
-    const auto mesh_of = [&](const Shape& shape) {
-      const Mesh* const mesh = std::get_if<Mesh>(&shape);
-      return mesh != nullptr && mesh->uri == uri && mesh->triangles ? mesh : nullptr;
+    const Mesh* found = nullptr;
+    const auto look_in = [&](const auto& parts) {
+      for (const auto& part : parts) {
+        const Mesh* const mesh = std::get_if<Mesh>(&part.shape);
+        if (found == nullptr && mesh != nullptr && mesh->uri == uri && mesh->triangles) found = mesh;
+      }
     };
-    for (const Body& body : view_.scene().bodies) {
-      for (const Visual& visual : body.visuals)
-        if (const Mesh* const mesh = mesh_of(visual.shape)) return mesh;
-      for (const PlacedShape& placed : body.shapes)
-        if (const Mesh* const mesh = mesh_of(placed.shape)) return mesh;
-    }
-    return nullptr;
+    for (const Body& body : view_.scene().bodies) look_in(body.visuals), look_in(body.shapes);
+    return found;
   }
 
   /// Properties of an object in rviz's Selection panel.
@@ -179,14 +173,23 @@ class InteractionDisplay : public rviz::Display {
     rviz::VectorProperty *position_ = nullptr, *velocity_ = nullptr, *spin_ = nullptr;
     rviz::QuaternionProperty* orientation_ = nullptr;
   };
-  /// A layer's switch, and if it has them its colour and a threshold.
-  struct Layer {
-    rviz::BoolProperty* shown = nullptr;
-    rviz::ColorProperty* colour = nullptr;
-    rviz::FloatProperty* threshold = nullptr;
-  };
   rviz::BoolProperty* add_layer(const char* name, const char* title, bool shown, const char* description) {
-    return layers_[name].shown = new rviz::BoolProperty(title, shown, description, this);
+    return layers_[name] = new rviz::BoolProperty(title, shown, description, this);
+  }
+
+  void add_colour(rviz::Property* layer, const char* title, std_msgs::ColorRGBA PictureStyle::*colour) {
+    const auto* property = new rviz::ColorProperty(title, to_qt(PictureStyle().*colour), "", layer);
+    readers_.push_back([property, colour](PictureStyle& style) {
+      const Rgb rgb = to_rgb(*property);
+      (style.*colour).r = rgb[0], (style.*colour).g = rgb[1], (style.*colour).b = rgb[2];
+    });
+  }
+
+  static rviz::FloatProperty* add_number(rviz::Property* layer, const char* title, double value,
+                                         const char* description) {
+    auto* property = new rviz::FloatProperty(title, value, description, layer);
+    property->setMin(0.0f);
+    return property;
   }
 
   void add_properties() {
@@ -194,40 +197,38 @@ class InteractionDisplay : public rviz::Display {
     namespace_ = new rviz::StringProperty("Namespace", "", "In which scene and rendered_view are", this);
     unreliable_ = new rviz::BoolProperty("Unreliable", false,
                                          "Ask for UDP: on a slow network, late poses are dropped", this);
-    const auto colour = [this](const char* layer, const char* title, const QColor& value) {
-      return layers_[layer].colour = new rviz::ColorProperty(title, value, "", layers_[layer].shown);
-    };
-    const auto threshold = [this](const char* layer, const char* title, double value,
-                                  const char* description) {
-      auto* property =
-          new rviz::FloatProperty(title, static_cast<float>(value), description, layers_[layer].shown);
-      property->setMin(0.0f);
-      layers_[layer].threshold = property;
-    };
     auto* hand = add_layer("hand", "Hand", true, "The rendered hand: never inside an object");
-    colour("hand", "Skin", to_qt(kSkin));
+    skin_ = new rviz::ColorProperty("Skin", to_qt(kSkin), "", hand);
     touching_ = new rviz::ColorProperty("Touching", to_qt(tone_.touching), "Where it is in contact", hand);
     auto* ghost =
         add_layer("ghost", "Ghost", true, "The tracked hand, where it differs from the rendered one");
-    colour("ghost", "Color", to_qt(style.ghost));
-    threshold("ghost", "From [m]", style.ghost_from, "Invisible where it is nearer to the rendered hand");
-    ghost_alpha_ = new rviz::FloatProperty("Alpha", style.ghost.a, "Maximum opacity", ghost);
-    ghost_alpha_->setMin(0.0f);
-    ghost_alpha_->setMax(1.0f);
+    add_colour(ghost, "Color", &PictureStyle::ghost);
+    const auto* from =
+        add_number(ghost, "From [m]", style.ghost_from, "Invisible where it is nearer to the rendered hand");
+    auto* alpha = add_number(ghost, "Alpha", style.ghost.a, "Maximum opacity");
+    alpha->setMax(1.0f);
+    readers_.push_back([from, alpha](PictureStyle& read) {
+      read.ghost.a = alpha->getFloat();
+      read.ghost_full += from->getFloat() - read.ghost_from;
+      read.ghost_from = from->getFloat();
+    });
     add_layer("objects", "Objects", true, "Free and jointed bodies");
     add_layer("fixtures", "Fixtures", true, "Immovable bodies");
-    add_layer("contacts", "Contacts", true, "A dot at each contact");
-    colour("contacts", "Color", to_qt(style.contacts));
+    auto* contacts = add_layer("contacts", "Contacts", true, "A dot at each contact");
+    add_colour(contacts, "Color", &PictureStyle::contacts);
     auto* friction = add_layer("friction", "Friction", true, "A ring around each contact");
-    colour("friction", "Sticks", to_qt(style.sticks));
-    slips_ = new rviz::ColorProperty("Slips", to_qt(style.slips), "", friction);
-    add_layer("forces", "Forces", true, "An arrow behind each loaded finger");
-    colour("forces", "Color", to_qt(style.forces));
-    threshold("forces", "Least [N]", style.least_force, "Smaller forces have no arrow and no number");
+    add_colour(friction, "Sticks", &PictureStyle::sticks);
+    add_colour(friction, "Slips", &PictureStyle::slips);
+    auto* forces = add_layer("forces", "Forces", true, "An arrow behind each loaded finger");
+    add_colour(forces, "Color", &PictureStyle::forces);
+    const auto* least =
+        add_number(forces, "Least [N]", style.least_force, "Smaller forces have no arrow and no number");
+    readers_.push_back([least](PictureStyle& read) { read.least_force = least->getFloat(); });
     add_layer("newtons", "Newtons", false, "The forces as numbers");
     add_layer("share", "Share", false, "Friction utilisation: blue none, orange full");
-    add_layer("impacts", "Impacts", true, "A ring at each impact of a hand, which fades within 0.15 s");
-    colour("impacts", "Color", to_qt(style.impacts));
+    auto* impacts =
+        add_layer("impacts", "Impacts", true, "A ring at each impact of a hand, which fades within 0.15 s");
+    add_colour(impacts, "Color", &PictureStyle::impacts);
     add_layer("shadows", "Shadows", true, "Vertically below hands and objects");
     add_layer("text", "Text", true, "Held objects, contact model and gravity");
     add_layer("capsules", "Capsules", false, "The rendered hand as simulated");
@@ -279,21 +280,15 @@ class InteractionDisplay : public rviz::Display {
     if (subscribed_namespace_ != namespace_->getStdString() ||
         subscribed_unreliable_ != unreliable_->getBool())
       reset();
-    for (const auto& [name, layer] : layers_) scene_->show_layer(name, layer.shown->getBool());
-    tone_ = {to_rgb(*layers_["hand"].colour) / kSkin, to_rgb(*touching_)};
+    show_layers();
+    tone_ = {to_rgb(*skin_) / kSkin, to_rgb(*touching_)};
     if (!markers_) return;
-    PictureStyle& style = markers_->style();
-    style.skins = false;
-    set_colour(*layers_["ghost"].colour, style.ghost);
-    style.ghost.a = ghost_alpha_->getFloat();
-    style.ghost_full += static_cast<double>(layers_["ghost"].threshold->getFloat()) - style.ghost_from;
-    style.ghost_from = static_cast<double>(layers_["ghost"].threshold->getFloat());
-    set_colour(*layers_["contacts"].colour, style.contacts);
-    set_colour(*layers_["friction"].colour, style.sticks);
-    set_colour(*slips_, style.slips);
-    set_colour(*layers_["forces"].colour, style.forces);
-    style.least_force = static_cast<double>(layers_["forces"].threshold->getFloat());
-    set_colour(*layers_["impacts"].colour, style.impacts);
+    markers_->style().skins = false;
+    for (const auto& read : readers_) read(markers_->style());
+  }
+
+  void show_layers() {
+    for (const auto& [name, shown] : layers_) scene_->show_layer(name, shown->getBool());
   }
 
   bool place_in_fixed_frame() {
@@ -315,9 +310,7 @@ class InteractionDisplay : public rviz::Display {
 
   Vector3 eye() const {
     const Ogre::Vector3 place = scene_node_->convertWorldToLocalPosition(camera().getDerivedPosition());
-    return Eigen::Vector3f(static_cast<float>(place.x), static_cast<float>(place.y),
-                           static_cast<float>(place.z))
-        .cast<double>();
+    return Vector3(place.x, place.y, place.z);
   }
 
   void draw() {
@@ -329,7 +322,7 @@ class InteractionDisplay : public rviz::Display {
       header.stamp = stamp_;
       markers_->update(result, view_.state(), header, array_);
       scene_->take(array_);
-      for (const auto& [name, layer] : layers_) scene_->show_layer(name, layer.shown->getBool());
+      show_layers();
       for (const std::string& mesh : scene_->missing())
         setStatusStd(rviz::StatusProperty::Warn, "Mesh", "'" + mesh + "' cannot be loaded on this machine");
     }
@@ -348,32 +341,28 @@ class InteractionDisplay : public rviz::Display {
       ghosts_[i]->hide();
       if (i >= hands) continue;
       const RenderedHand& rendered = result.rendered[i];
-      if (layers_["hand"].shown->getBool())
-        skins_[i]->draw(rendered, result, view_.state(), tone_, layers_["capsules"].shown->getBool(),
-                        drawn_from_);
-      if (layers_["ghost"].shown->getBool())
+      if (layers_["hand"]->getBool())
+        skins_[i]->draw(rendered, result, view_.state(), tone_, layers_["capsules"]->getBool(), drawn_from_);
+      if (layers_["ghost"]->getBool())
         ghosts_[i]->draw_ghost(rendered.hand, result.tracked[i], style, drawn_from_);
     }
   }
 
   /// Fingers that touch an object, with their forces.
   std::string touching(const std::string& object) {
-    char force[32];
-    std::string all;
+    std::vector<std::string> fingers;
     for (const Contact& contact : view_.result().contacts) {
-      if (!contact.touching() || view_.scene().bodies[contact.key.body].name != object) continue;
-      std::snprintf(force, sizeof force, " %.1f N", contact.force.norm());
-      all += (all.empty() ? "" : ", ") + std::string(finger_name(contact.key.capsule)) + force;
+      if (contact.touching() && view_.scene().bodies[contact.key.body].name == object)
+        fingers.push_back(finger_name(contact.key.capsule) + text::format(" %.1f N", contact.force.norm()));
     }
-    return all;
+    return text::joined(fingers);
   }
 
-  std::map<std::string, Layer> layers_;
+  std::map<std::string, rviz::BoolProperty*> layers_;              ///< the switch of each
+  std::vector<std::function<void(PictureStyle& style)>> readers_;  ///< of properties of the style
   rviz::StringProperty* namespace_;
   rviz::BoolProperty* unreliable_;
-  rviz::ColorProperty* touching_;
-  rviz::ColorProperty* slips_;
-  rviz::FloatProperty* ghost_alpha_;
+  rviz::ColorProperty *skin_, *touching_;
 
   std::string subscribed_namespace_;
   bool subscribed_unreliable_ = false;

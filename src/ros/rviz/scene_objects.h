@@ -32,6 +32,7 @@
 #include "../../rendering/skin.h"
 #include "../marker_layers.h"
 #include "mr_hand_interaction/ros/markers.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
@@ -40,16 +41,13 @@ using visualization_msgs::MarkerArray;
 
 template <typename Vector>
 Ogre::Vector3 to_ogre(const Vector& v) {
-  return Ogre::Vector3(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
+  return Ogre::Vector3(v.x, v.y, v.z);
 }
-
 inline Ogre::Vector3 to_ogre(const Vector3& v) {
-  return Ogre::Vector3(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
+  return Ogre::Vector3(v.x(), v.y(), v.z());
 }
-
 inline Ogre::Quaternion to_ogre(const geometry_msgs::Quaternion& q) {
-  return Ogre::Quaternion(static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
-                          static_cast<float>(q.z));
+  return Ogre::Quaternion(q.w, q.x, q.y, q.z);
 }
 
 constexpr const char* kStatus = "text";  ///< the layer of held objects
@@ -173,8 +171,7 @@ class MarkerScene {
     for (const auto& triangle : mesh->triangles->triangles) {
       std::array<Vector3, 3> corners;
       for (std::size_t i = 0; i < 3; ++i)
-        corners[i] =
-            mesh->triangles->vertices[static_cast<std::size_t>(triangle[i])].cwiseQuotient(mesh->scale);
+        corners[i] = mesh->triangles->vertices[triangle[i]].cwiseQuotient(mesh->scale);
       const Vector3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
       for (const Vector3& corner : corners) {
         object.position(to_ogre(corner));
@@ -245,7 +242,7 @@ class FineSkin {
     const auto middle = [&](int a, int b) {
       const auto [found, is_new] =
           middles.try_emplace(std::minmax(a, b), static_cast<int>(skin.size() + edges_.size()));
-      if (is_new) edges_.push_back({static_cast<std::size_t>(a), static_cast<std::size_t>(b)});
+      if (is_new) edges_.push_back({a, b});
       return found->second;
     };
     for (const auto& [a, b, c] : skin.triangles()) {
@@ -275,7 +272,7 @@ class FineSkin {
   }
 
  private:
-  std::vector<std::array<std::size_t, 2>> edges_;
+  std::vector<std::array<int, 2>> edges_;
   SkinTriangles triangles_;
 };
 
@@ -291,7 +288,7 @@ inline void add_vertex(const Vector3& place, const Rgb& c, float alpha, Ogre::Ma
 class SkinObject {
  public:
   SkinObject(Ogre::SceneManager* manager, Ogre::SceneNode* parent)
-      : skin_(Skin::detailed()), paint_(skin_), manager_(manager), node_(parent->createChildSceneNode()) {
+      : skin_(Skin::detailed()), manager_(manager), node_(parent->createChildSceneNode()) {
     static int count = 0;
     object_ = manager_->createManualObject("mr_hand_interaction/skin" + std::to_string(count++));
     object_->setDynamic(true);
@@ -312,7 +309,7 @@ class SkinObject {
     object_->setVisible(skin_.pose(rendered.hand, surface_));
     if (!object_->isVisible()) return;
     press_flat(result.contacts, state, rendered.hand.id, skin_, surface_);
-    paint_.paint(rendered, surface_, colours_, tone);
+    paint_skin(skin_, rendered, surface_, colours_, tone);
     for (std::size_t v = 0; v < colours_.size(); ++v) {
       const Eigen::Vector3f to_eye = (eye - surface_.vertices[v]).cast<float>().normalized();
       colours_[v] = (colours_[v] + sheen(surface_.normals[v].cast<float>(), to_eye)).min(1.0f);
@@ -331,7 +328,7 @@ class SkinObject {
 
   /// The tracked hand where it differs from the rendered one, most opaque at its outline.
   void draw_ghost(const Hand& rendered, const Hand& tracked, const PictureStyle& style, const Vector3& eye) {
-    const bool apart = farthest_apart(rendered, tracked) > style.ghost_from;
+    const bool apart = farthest_joint(rendered, tracked) > style.ghost_from;
     object_->setVisible(apart && skin_.pose(tracked, surface_) && skin_.pose(rendered, beneath_));
     if (!object_->isVisible()) return;
     begin(true, skin_.triangles().size());
@@ -365,14 +362,11 @@ class SkinObject {
 
   void end(Side side, const SkinTriangles& triangles) {
     const std::size_t second = side == Side::left ? 2 : 1;
-    for (const auto& t : triangles)
-      object_->triangle(static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[second]),
-                        static_cast<std::uint32_t>(t[3 - second]));
+    for (const auto& t : triangles) object_->triangle(t[0], t[second], t[3 - second]);
     object_->end();
   }
 
   const Skin& skin_;
-  const SkinPaint paint_;
   Ogre::SceneManager* manager_;
   Ogre::SceneNode* node_;
   Ogre::ManualObject* object_;

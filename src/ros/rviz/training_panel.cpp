@@ -19,6 +19,8 @@
 #include <string>
 #include <thread>
 
+#include "../result_messages.h"
+
 namespace mrhi {
 namespace {
 
@@ -29,14 +31,11 @@ constexpr double kOld = 1.0;   // older messages are ignored [s]
 const char* const kNode = "training_node/";
 const char* const kPauses = "pause";
 
-const char* phase_name(std::uint8_t phase) {
-  static const char* const names[] = {"ready", "running", "paused", "finished"};
-  return phase < 4 ? names[phase] : "?";
-}
+const std::vector<const char*> kPhaseNames{"ready", "running", "paused", "finished"};
+const std::vector<const char*> kStageNames{"manipulation", "maintenance", "release"};
 
-const char* stage_name(std::uint8_t stage) {
-  static const char* const names[] = {"manipulation", "maintenance", "release"};
-  return stage < 3 ? names[stage] : "?";
+const char* name_in(const std::vector<const char*>& names, std::size_t number) {
+  return number < names.size() ? names[number] : "?";
 }
 
 bool is_old(const ros::SteadyTime& time) {
@@ -112,13 +111,7 @@ class TrainingPanel : public rviz::Panel {
   }
 
   void take_contacts(const mr_hand_interaction::ContactArray& message) {
-    double pressing = 0.0;
-    for (const auto& contact : message.contacts) {
-      if (contact.object != status_.object) continue;
-      const auto &n = contact.normal, &f = contact.force;
-      pressing += std::max(0.0, -(n.x * f.x + n.y * f.y + n.z * f.z));
-    }
-    grip_ = 0.5 * pressing;
+    grip_ = grip_force(message, {status_.object});
     touched_ = ros::SteadyTime::now();
   }
 
@@ -155,7 +148,8 @@ class TrainingPanel : public rviz::Panel {
                       .arg(status_.trials)
                       .arg(QString::fromStdString(status_.object))
                       .arg(status_.repetition));
-    show("phase", QString("%1, %2").arg(phase_name(status_.phase)).arg(stage_name(status_.stage)));
+    show("phase",
+         QString("%1, %2").arg(name_in(kPhaseNames, status_.phase)).arg(name_in(kStageNames, status_.stage)));
     show("instruction", QString::fromStdString(status_.instruction));
     show("time", QString("%1 s").arg(status_.elapsed, 0, 'f', 1));
     show("grasps", QString::number(status_.attempts));

@@ -37,6 +37,17 @@ Tangential coulomb(const Vector3& spring_force, double normal_force, const Mater
 /// Damping of tangential motion while a contact sticks, over critical damping.
 constexpr double kTangentialDamping = 0.5;
 
+/// Displacement of the phalanx's point from the god object, along the surface [m].
+inline Vector3 stretch_of(const Contact& contact) {
+  const Vector3 reach = contact.hand_point - contact.point;
+  return reach - contact.normal.dot(reach) * contact.normal;
+}
+
+/// Force of a spring along the surface and of the `drag` beside it, limited by Coulomb's law under the normal
+/// force `load` [N]. Where the contact slips, its god object moves to where the spring has just that force.
+Vector3 tangential_force(const Material& material, double stiffness, const Vector3& drag, double load,
+                         const BodyState& state, Contact& contact);
+
 /// One contact of the penetration phase: sets its force, moves its god object to the rim of the friction cone
 /// where it slips, and returns the force on the object [N]. `damping` acts along the surface, within the cone
 /// [N s/m].
@@ -45,6 +56,6 @@ Vector3 penetration_force(const Body& body, const BodyState& state, double dampi
 
 /// The penetration phase: the forces of all contacts act for one step. Without contact/damping
 /// (kTangentialDamping) and contact/release_fade (kReleaseSpeed) it is exactly the paper's.
-void penetration_phase(const ContactConfiguration& configuration, ContactStep& step);
+void penetration_phase(ContactStep& step);
 
 }  // namespace mrhi
