@@ -245,39 +245,23 @@ void assign(Configuration& configuration, const std::string& name, const YAML::N
                        " is not allowed; allowed: " + entry.allowed);
 }
 
-/// Sets the parameters of a map; nested maps are name spaces.
-class FileReader {
- public:
-  FileReader(const std::string& file, Configuration& configuration)
-      : file_(file), configuration_(configuration) {}
-
-  void read(const YAML::Node& map, const std::string& prefix) {
-    for (const auto& entry : map) {
-      const std::string name = prefix + yaml_text(entry.first);
-      if (entry.second.IsMap()) {
-        read(entry.second, name + "/");
-      } else {
-        set(name, entry.second);
-      }
+/// Sets the parameters of a map; nested maps are name spaces. `seen`: names set so far.
+void read_map(const std::string& file, const YAML::Node& map, const std::string& prefix,
+              std::set<std::string>& seen, Configuration& configuration) {
+  for (const auto& entry : map) {
+    const YAML::Node node = entry.second;
+    const std::string name = prefix + yaml_text(entry.first);
+    if (node.IsMap()) {
+      read_map(file, node, name + "/", seen, configuration);
+      continue;
     }
-  }
-
- private:
-  void set(const std::string& name, const YAML::Node& node) {
-    try {
-      if (!seen_.insert(name).second) {
+    rethrown<ParameterError, ParameterError>(yaml_place(file, node.Mark()) + ": ", [&] {
+      if (!seen.insert(name).second)
         throw ParameterError("parameter '" + name + "' is given twice; allowed: once");
-      }
-      assign(configuration_, name, node);
-    } catch (const ParameterError& error) {
-      throw ParameterError(yaml_place(file_, node.Mark()) + ": " + error.what());
-    }
+      assign(configuration, name, node);
+    });
   }
-
-  const std::string& file_;
-  Configuration& configuration_;
-  std::set<std::string> seen_;
-};
+}
 
 }  // namespace
 
@@ -295,7 +279,8 @@ void load_parameters(Configuration& configuration, const std::string& yaml_file)
                            " is not allowed; allowed: a map of parameters");
     }
     Configuration changed = configuration;
-    FileReader(yaml_file, changed).read(root, "");
+    std::set<std::string> seen;
+    read_map(yaml_file, root, "", seen, changed);
     configuration = changed;
   });
 }

@@ -30,11 +30,8 @@ constexpr std::size_t kMaxYamlBytes = 4u << 20;
 }
 
 YAML::Node recorded_yaml(const std::string& yaml) {
-  try {
-    return load_yaml("recorded change", yaml, kMaxYamlBytes);
-  } catch (const YamlError& error) {
-    throw std::invalid_argument(error.what());
-  }
+  return rethrown<std::invalid_argument, YamlError>(
+      "", [&] { return load_yaml("recorded change", yaml, kMaxYamlBytes); });
 }
 
 std::string text_in(const YAML::Node& node, const char* key) {

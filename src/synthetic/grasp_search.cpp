@@ -301,15 +301,12 @@ struct Misses {
   double pressing, any;
 };
 
-Misses misses(const Grasp& grasp, double gap) {
+Misses misses(Grasp grasp, double gap) {
   constexpr int kIterations = 24;  // a tenth of what places them: the error alone matters
-  const HandPosture preferred = within_limits(human_hand(), grasp.preferred);
+  grasp.preferred = within_limits(human_hand(), grasp.preferred);
   Misses worst{0.0, 0.0};
   for (const FingertipContact& contact : grasp.contacts) {
-    const FingerSkeleton& finger = human_hand().fingers[contact.finger];
-    const double height = finger.radius + (gap < 0.0 ? -contact.depth : gap);
-    const Vector3 target = grasp.wrist.to_local(contact.point + height * contact.normal);
-    const double error = reach(finger, target, preferred.col(contact.finger), kIterations).error;
+    const double error = grasp.reach_contact(contact, gap, kIterations).error;
     worst.any = std::max(worst.any, error);
     if (contact.depth > 0.0) worst.pressing = std::max(worst.pressing, error);
   }

@@ -44,7 +44,7 @@ constexpr int kSteps = 5;            // of a grip's depth
 /// All tips at `share` of their depths; below 0 they are off the surface.
 HandPosture pressed(Grasp grasp, double share) {
   for (FingertipContact& contact : grasp.contacts) contact.depth *= share;
-  return place_fingertips(human_hand(), grasp.wrist, grasp.contacts, -1.0, grasp.preferred);
+  return grasp.posture(-1.0);
 }
 
 // The thumb bears against three fingers opposite it, or against four round a ball, which push obliquely.
@@ -138,20 +138,17 @@ Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAng
   return {angles, (target - tip(finger, angles)).norm()};
 }
 
-HandPosture place_fingertips(const HandSkeleton& skeleton, const Pose& wrist,
-                             const std::vector<FingertipContact>& contacts, double gap,
-                             const HandPosture& preferred, double* worst_error) {
-  HandPosture posture = within_limits(skeleton, preferred);
-  double worst = 0.0;
-  for (const FingertipContact& contact : contacts) {
-    const FingerSkeleton& finger = skeleton.fingers[contact.finger];
-    const double height = finger.radius + (gap < 0.0 ? -contact.depth : gap);
-    const Vector3 target = wrist.to_local(contact.point + height * contact.normal);
-    const Reach result = reach(finger, target, preferred.col(contact.finger));
-    posture.col(contact.finger) = result.angles;
-    worst = std::max(worst, result.error);
-  }
-  if (worst_error != nullptr) *worst_error = worst;
+Reach Grasp::reach_contact(const FingertipContact& contact, double gap, int iterations) const {
+  const FingerSkeleton& finger = human_hand().fingers[contact.finger];
+  const double height = finger.radius + (gap < 0.0 ? -contact.depth : gap);
+  const Vector3 target = wrist.to_local(contact.point + height * contact.normal);
+  return reach(finger, target, preferred.col(contact.finger), iterations);
+}
+
+HandPosture Grasp::posture(double gap) const {
+  HandPosture posture = within_limits(human_hand(), preferred);
+  for (const FingertipContact& contact : contacts)
+    posture.col(contact.finger) = reach_contact(contact, gap).angles;
   return posture;
 }
 
@@ -170,7 +167,7 @@ GraspPostures::GraspPostures(const Grasp& grasp) {
   double mean_depth = 0.0;
   for (const FingertipContact& contact : grasp.contacts) mean_depth += contact.depth;
   mean_depth /= static_cast<double>(grasp.contacts.size());
-  open = place_fingertips(human_hand(), grasp.wrist, grasp.contacts, grasp.opening, grasp.preferred);
+  open = grasp.posture(grasp.opening);
   near = pressed(grasp, -kNearly / mean_depth);
   touching = pressed(grasp, 0.0);
   pressing = pressed(grasp, 1.0);
@@ -193,7 +190,7 @@ GripPostures::GripPostures(const Grasp& grasp, double deepest) : deepest_(deepes
   for (const FingertipContact& contact : grasp.contacts)
     mean_share += contact.depth / static_cast<double>(grasp.contacts.size());
   near_depth = -kArrived / mean_share;
-  open = place_fingertips(human_hand(), grasp.wrist, grasp.contacts, grasp.opening, grasp.preferred);
+  open = grasp.posture(grasp.opening);
   near = pressed(grasp, near_depth);
   for (int i = 0; i < kSteps; ++i) pressed_.push_back(pressed(grasp, deepest * i / (kSteps - 1)));
 }

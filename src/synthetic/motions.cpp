@@ -1,6 +1,7 @@
 #include "motions.h"
 
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 #include "../text/text.h"
@@ -80,8 +81,11 @@ void carry_and_release(Script& script, const Grasp& grasp, const GraspPostures& 
           shifted(wrist, kApproachLength * retreat + aside));
 }
 
-ScriptedMotion reach_and_carry(const char* object, const Vector3& aside) {
-  return reach_and_carry(object, shipped_grasp(object), scene_object(), aside);
+/// Makes a motion.
+using Make = std::function<ScriptedMotion()>;
+
+Make carry(const char* object, const Vector3& aside) {
+  return [=] { return reach_and_carry(object, shipped_grasp(object), scene_object(), aside); };
 }
 
 ScriptedMotion catch_ball() {
@@ -219,15 +223,15 @@ Grasp rail_grasp(double width) {
 const Vector3 kBeside(0.03, -0.08, 0.03);  // start and end of the hand [m]
 
 /// A fingertip that touches at `place`, moves on by `way` in `duration`, and returns.
-ScriptedMotion push(const Vector3& place, const Vector3& normal, const Vector3& way, double duration) {
-  const Vector3 ready = 0.03 * normal;
-  const Pose at = touching(place, normal), off = shifted(at, ready);
-  const HandPosture posture = pointing_posture();
-  Script script("panel");
-  script.then(0.0, shifted(off, kBeside), relaxed_posture()).then(0.9, off, posture).hold(0.2);
-  script.then(duration, shifted(at, way), posture).hold(0.4).then(0.8 * duration, off, posture);
-  script.then(0.9, shifted(off, kBeside), relaxed_posture());
-  return script.motion();
+Make push(const Vector3& place, const Vector3& normal, const Vector3& way, double duration) {
+  return [=] {
+    const Pose at = touching(place, normal), off = shifted(at, 0.03 * normal);
+    const HandPosture posture = pointing_posture();
+    Script script("panel");
+    script.then(0.0, shifted(off, kBeside), relaxed_posture()).then(0.9, off, posture).hold(0.2);
+    script.then(duration, shifted(at, way), posture).hold(0.4).then(0.8 * duration, off, posture);
+    return script.then(0.9, shifted(off, kBeside), relaxed_posture()).motion();
+  };
 }
 
 constexpr double kHatchFace = 0.115;  // a fingertip that rotates a latch is this far before the hatch [m]
@@ -304,65 +308,45 @@ ScriptedMotion squeeze_tongs() {
   return script.motion();
 }
 
+/// A quarter turn by the upper arm.
+ScriptedMotion turn_valve() {
+  const Vector3 axle(0.01, 0.12, 0.34);
+  GraspScript grip(Script("panel"), bar_grasp(0.014), axle + Vector3(0.0, 0.0, 0.031));
+  grip.take(kBeside).hold(0.3).turn_about(1.6, axle, turn(60.0, Vector3::UnitY()));
+  return grip.let_go(kBeside);
+}
+
+ScriptedMotion open_drawer() {
+  GraspScript grip(Script("panel"), rail_grasp(0.012), {-0.13, 0.10, 0.15});
+  return grip.take({0.0, -0.08, 0.0}).hold(0.3).slide(1.6, {0.0, -0.12, 0.0}).let_go({0.0, -0.03, 0.0});
+}
+
+ScriptedMotion open_door() {
+  GraspScript grip(Script("panel"), bar_grasp(0.012), {0.075, 0.10, 0.17});
+  grip.take(kBeside).hold(0.3).turn_about(2.0, {0.2, 0.14, 0.17}, turn(60.0, Vector3::UnitZ()));
+  return grip.let_go({0.0, -0.03, 0.0});
+}
+
 struct MotionEntry {
   const char* name;
-  ScriptedMotion (*make)();
+  Make make;
 };
 const MotionEntry kMotions[] = {
-    {"grasp_cube",
-     [] {
-       return reach_and_carry("cube", {0.05, -kAside, 0.02});
-     }},
-    {"grasp_ball",
-     [] {
-       return reach_and_carry("ball", {0.05, -kAside, 0.02});
-     }},
+    {"grasp_cube", carry("cube", {0.05, -kAside, 0.02})},
+    {"grasp_ball", carry("ball", {0.05, -kAside, 0.02})},
     {"catch_ball", catch_ball},
-    {"pinch_long",
-     [] {
-       return reach_and_carry("long_cuboid", {0.04, -kAside, 0.0});
-     }},
-    {"lift_flat",
-     [] {
-       return reach_and_carry("flat_cuboid", {0.04, -kAside + 0.08, -0.04});
-     }},
+    {"pinch_long", carry("long_cuboid", {0.04, -kAside, 0.0})},
+    {"lift_flat", carry("flat_cuboid", {0.04, -kAside + 0.08, -0.04})},
     {"nudge", nudge},
     {"tap", tap},
     {"slap", slap},
-    {"press_button",
-     [] {
-       return push({-0.2, 0.12, 0.36}, -Vector3::UnitY(), {0.0, 0.012, 0.0}, 1.0);
-     }},
+    {"press_button", push({-0.2, 0.12, 0.36}, -Vector3::UnitY(), {0.0, 0.012, 0.0}, 1.0)},
     // Pushes down the raised end, at 20 degrees.
-    {"flip_switch",
-     [] {
-       return push({-0.11, 0.123, 0.3755}, Vector3::UnitZ(), {0.0, 0.0, -0.024}, 1.2);
-     }},
-    // A quarter turn by the upper arm.
-    {"turn_valve",
-     [] {
-       const Vector3 axle(0.01, 0.12, 0.34);
-       GraspScript grip(Script("panel"), bar_grasp(0.014), axle + Vector3(0.0, 0.0, 0.031));
-       return grip.take(kBeside)
-           .hold(0.3)
-           .turn_about(1.6, axle, turn(60.0, Vector3::UnitY()))
-           .let_go(kBeside);
-     }},
-    {"pull_lever",
-     [] {
-       return push({0.16, 0.085, 0.368}, Vector3::UnitZ(), {0.0, 0.0, -0.03}, 1.2);
-     }},
-    {"open_drawer",
-     [] {
-       GraspScript grip(Script("panel"), rail_grasp(0.012), {-0.13, 0.10, 0.15});
-       return grip.take({0.0, -0.08, 0.0}).hold(0.3).slide(1.6, {0.0, -0.12, 0.0}).let_go({0.0, -0.03, 0.0});
-     }},
-    {"open_door",
-     [] {
-       GraspScript grip(Script("panel"), bar_grasp(0.012), {0.075, 0.10, 0.17});
-       grip.take(kBeside).hold(0.3).turn_about(2.0, {0.2, 0.14, 0.17}, turn(60.0, Vector3::UnitZ()));
-       return grip.let_go({0.0, -0.03, 0.0});
-     }},
+    {"flip_switch", push({-0.11, 0.123, 0.3755}, Vector3::UnitZ(), {0.0, 0.0, -0.024}, 1.2)},
+    {"turn_valve", turn_valve},
+    {"pull_lever", push({0.16, 0.085, 0.368}, Vector3::UnitZ(), {0.0, 0.0, -0.03}, 1.2)},
+    {"open_drawer", open_drawer},
+    {"open_door", open_door},
     {"open_hatch", open_hatch},
     {"squeeze_tongs", squeeze_tongs}};
 

@@ -87,13 +87,6 @@ struct FingertipContact {
   double depth;  ///< of the fingertip beyond the surface [m]
 };
 
-/// `preferred` with the fingers of `contacts` placed so that their tips, as spheres of the finger's radius,
-/// are `gap` off the surface. If gap is negative, the tips are at each contact's depth instead. Contacts are
-/// in the frame of `wrist`; right hand. `worst_error`, if set, receives the largest Reach::error.
-HandPosture place_fingertips(const HandSkeleton& skeleton, const Pose& wrist,
-                             const std::vector<FingertipContact>& contacts, double gap,
-                             const HandPosture& preferred, double* worst_error = nullptr);
-
 /// A right hand's grasp of an object, in the object's frame.
 struct Grasp {
   Pose wrist;  ///< while the object is held
@@ -103,6 +96,11 @@ struct Grasp {
   Vector3 retreat;        ///< unit: direction in which the open hand leaves the object
 
   Grasp turned(const Quaternion& by) const;
+  /// Reaches for a contact, so that the tip, as a sphere of the finger's radius, is `gap` off the surface; if
+  /// gap is negative, at the contact's depth.
+  Reach reach_contact(const FingertipContact& contact, double gap, int iterations = 200) const;
+  /// The preferred posture with the fingers of the contacts placed likewise.
+  HandPosture posture(double gap) const;
 };
 
 /// Postures of a hand around an object: open, nearly touching, just touching with all tips, and holding.

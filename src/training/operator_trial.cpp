@@ -309,12 +309,12 @@ Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64
   TrackingNoise noise(stage.noise, seeds.bits());
   Nanoseconds stamp = begin;
   session.begin(begin);
+  Observation seen = observe(simulation, 0);
   for (std::int64_t n = 0; session.phase() == SessionPhase::running; ++n) {
     stamp = begin + static_cast<Nanoseconds>(std::llround(static_cast<double>(n) * 1e9 / stage.frame_rate));
     const BodyState& state = simulation.state().bodies.front();
     Sight sight = sight_of(task, session.trial().goal(), state.pose, twist_of(scene.bodies.front(), state),
                            is_held(0, simulation.state()));
-    const Observation seen = observe(simulation, 0);
     sight.grip = seen.grip_force.value_or(0.0);
     if (seen.person) sight.body = seen.person->pose, sight.body_twist = seen.person->twist;
     JointsFrame joints{stamp, hands_of(*person, to_seconds(stamp - begin), sight, Pose{})};
@@ -322,7 +322,8 @@ Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64
     HandFrame frame{stamp, {}};
     for (const HandJoints& hand : joints.hands) frame.hands.push_back(complete_hand(hand, Pose{}));
     simulation.advance(frame);
-    session.update(observe(simulation, 0));
+    seen = observe(simulation, 0);
+    session.update(seen);
   }
   return stamp;
 }

@@ -106,36 +106,23 @@ void write_whole(const fs::path& file, const std::string& text) {
     throw SessionError(file.string() + ": cannot be written; allowed: a folder to write to with space left");
 }
 
-/// The line from shortly before the difference.
-std::string shown(const std::string& line, std::size_t differs) {
-  const std::size_t from = differs > kMaxBefore ? differs - kMaxBefore : 0;
-  return (from > 0 ? "'..." : "'") + text::one_line(line.substr(from), kMaxShown) + "'";
-}
-
-std::size_t first_difference(const std::string& a, const std::string& b) {
-  const std::size_t shorter = std::min(a.size(), b.size());
-  return static_cast<std::size_t>(
-      std::mismatch(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(shorter), b.begin()).first -
-      a.begin());
+/// The line that begins at `start`, from shortly before the difference at `differs`.
+std::string shown(const std::string& text, std::size_t start, std::size_t differs) {
+  if (start >= text.size()) return "'no such line'";
+  const std::size_t from = std::max(start, differs - std::min(differs, kMaxBefore));
+  const std::string line = text.substr(from, text.find('\n', from) - from);
+  return (from > start ? "'..." : "'") + text::one_line(line, kMaxShown) + "'";
 }
 
 /// Throws SessionError that shows the first difference between `there` and `here`.
 [[noreturn]] void refuse(const std::string& file, const std::string& there, const std::string& here) {
-  std::istringstream a(there), b(here);
-  std::string of_a, of_b;
-  int number = 0;
-  bool more = true;
-  while (more && of_a == of_b) {
-    ++number;
-    const bool more_a = static_cast<bool>(std::getline(a, of_a)),
-               more_b = static_cast<bool>(std::getline(b, of_b));
-    if (!more_a) of_a = "no such line";
-    if (!more_b) of_b = "no such line";
-    more = more_a || more_b;
-  }
-  const std::size_t differs = first_difference(of_a, of_b);
+  const auto end = there.begin() + static_cast<std::ptrdiff_t>(std::min(there.size(), here.size()));
+  const auto differs = std::mismatch(there.begin(), end, here.begin()).first;
+  const auto number = 1 + std::count(there.begin(), differs, '\n');
+  const auto at = static_cast<std::size_t>(differs - there.begin());
+  const std::size_t start = at == 0 ? 0 : there.rfind('\n', at - 1) + 1;  // 0 in the first line
   throw SessionError(file + ":" + std::to_string(number) + ": the session in this folder was begun with " +
-                     shown(of_a, differs) + ", this one has " + shown(of_b, differs) + kAllowed);
+                     shown(there, start, at) + ", this one has " + shown(here, start, at) + kAllowed);
 }
 
 /// Names in the order of comparison: readable files come before the checksums.

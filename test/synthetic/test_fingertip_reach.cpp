@@ -40,9 +40,9 @@ TEST(FingertipReach, places_the_skin_of_the_tips_at_the_gap_or_the_depth) {
   const Pose wrist{{0.01, 0.02, 0.03}, Quaternion(0.9, 0.1, 0.2, 0.3).normalized()};
   const Vector3 normal = wrist.orientation * Vector3(-1.0, 0.0, 0.0);
   const Vector3 point = wrist * Vector3(0.13, 0.01, -0.05);
-  const std::vector<FingertipContact> contacts{{2, point, normal, 0.004}};
+  const Grasp grasp{wrist, {{2, point, normal, 0.004}}, relaxed_posture(), 0.0, Vector3::UnitZ()};
   for (const double gap : {0.01, 0.0, -1.0}) {
-    const HandPosture posture = place_fingertips(human_hand(), wrist, contacts, gap, relaxed_posture());
+    const HandPosture posture = grasp.posture(gap);
     const Vector3 tip = wrist * finger_joints(bones(2), posture.col(2))[4];
     const double height = normal.dot(tip - point) - bones(2).radius;
     EXPECT_NEAR(height, gap < 0.0 ? -0.004 : gap, 1e-6);
