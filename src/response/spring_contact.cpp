@@ -38,6 +38,12 @@ double look_ahead(double step, double depth, bool damping) {
   return depth <= 0.0 ? step : mrhi::look_ahead(step, damping);
 }
 
+/// p(d) / d of a pad of that depth D (see Spring::compress).
+double shear_ratio(double depth, double pad) {
+  if (pad <= 0.0) return 1.0;
+  return depth > pad ? 1.0 - 0.5 * pad / depth : 0.5 * std::max(depth, 0.0) / pad;
+}
+
 double friction_of(const Material& material, Friction friction) {
   return friction == Friction::sticking ? material.static_friction : material.dynamic_friction;
 }
@@ -62,7 +68,7 @@ Vector3 slide(const SpringContact& solved, double dynamic_friction, double step)
   const Vector3 drawn = vector(response.drawn), stretch = vector(spring.stretch);
   const Vector3 tangential = vector(response.force + response.normal_force * spring.normal);
   const double rim = std::min(1.0, dynamic_friction * response.normal_force / tangential.norm());
-  const Vector3 kept = stretch + followed * (rim * tangential / spring.stiffness - stretch);
+  const Vector3 kept = stretch + followed * (rim * tangential / spring.shear - stretch);
   return stretch + followed * (drawn - stretch) - kept;
 }
 
@@ -148,11 +154,12 @@ void make_spring(const ContactStep& step, const Contact& contact, SpringContact&
   spring.pad = hand.pad;
   spring.half_over_pad = hand.pad > 0.0 ? 0.5 / hand.pad : 0.0;
   spring.stiffness = body.material.stiffness * contact.share;
+  spring.shear = spring.stiffness * shear_ratio(spring.depth, hand.pad);
   // Depth of a spring at full stiffness [m].
   spring.yields = contact.strength / std::max(spring.stiffness, 1e-300);
   spring.bond = 0.0;
   // Springs k at a lever arm l: a rotation by 1 rad stretches them by l, and they apply k l at that arm.
-  spring.twist_stiffness = configuration.torsion ? spring.stiffness * (kTwistLever * kTwistLever) : 0.0;
+  spring.twist_stiffness = configuration.torsion ? spring.shear * (kTwistLever * kTwistLever) : 0.0;
   spring.friction = contact.grip * friction_of(body.material, contact.friction);
   spring.patch_friction = kPatchTorque * spring.friction * contact.patch;
   result.arm = point - triple(step.bodies[contact.key.body].pose.position);
@@ -172,7 +179,7 @@ void make_spring(const ContactStep& step, const BodyContact& contact, SpringCont
   spring.depth = contact.depth;
   spring.ahead = look_ahead(step.step, spring.depth, configuration.damping);
   spring.fade = release_fade(configuration.release_fade);
-  spring.stiffness = configuration.object_stiffness * contact.share;
+  spring.stiffness = spring.shear = configuration.object_stiffness * contact.share;
   spring.friction = friction_of(contact.material, contact.friction);
   spring.twist = spring.twist_stiffness = spring.patch_friction = 0.0;
   spring.pad = spring.half_over_pad = spring.bond = 0.0;
@@ -259,7 +266,7 @@ double potential(const Spring& spring, const Triple& u, double spin) {
   const Triple drawn = spring.stretch + spring.ahead * (u - rate * spring.normal);
   const double turned = std::abs(spring.twist + spring.ahead * spin);
   return push_energy(spring, rate) +
-         (yielding_energy(spring.stiffness, std::sqrt(drawn.dot(drawn)), spring.slip_limit) +
+         (yielding_energy(spring.shear, std::sqrt(drawn.dot(drawn)), spring.slip_limit) +
           yielding_energy(spring.twist_stiffness, turned, spring.twist_limit)) /
              spring.ahead;
 }
@@ -277,7 +284,7 @@ void make_grip_spring(const ContactStep& step, const Grip& grip, int point, Spri
   result = SpringContact();
   result.spring.stretch = triple(grip.point[point] - on_body);
   result.spring.ahead = look_ahead(step.step, step.configuration.damping);
-  result.spring.stiffness = grip.stiffness;
+  result.spring.stiffness = result.spring.shear = grip.stiffness;
   result.spring.yields = HandStrength::kUnlimited;
   result.spring.bond = grip.bond;
   result.arm = triple(on_body - pose.position);
@@ -303,7 +310,7 @@ void settle_grip(const ContactStep& step, const SpringContact& solved, int point
   // Ideal plasticity: the anchor follows by the motion that the limit force does not take up. As in slide(),
   // with phi = mu: s + h u - s(h) = (h / e) (q+ - F / k).
   const double followed = step.step / spring.ahead;
-  const Vector3 yielded = followed * (vector(response.drawn) - force / spring.stiffness);
+  const Vector3 yielded = followed * (vector(response.drawn) - force / spring.shear);
   const Pose& pose = step.bodies[grip.body].pose;
   Vector3& end = grip.in_body[point];
   end = pose.to_local(pose * end + yielded);

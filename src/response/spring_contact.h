@@ -40,7 +40,8 @@ struct Spring {
   double yields;           ///< depth at full stiffness beyond which the finger complies [m]
   double ahead;            ///< look-ahead time of the spring: the step plus damping [s]
   double fade;             ///< 1 / separation speed at which the normal force vanishes; 0: no fade [s/m]
-  double stiffness;        ///< [N/m]
+  double stiffness;        ///< along the normal, beyond the pad [N/m]
+  double shear;            ///< tangential stiffness [N/m]
   double twist_stiffness;  ///< 0: no torsional resistance [N m/rad]
   double friction;         ///< Coulomb's coefficient: static while sticking, dynamic while slipping
   double patch_friction;   ///< torque limit of the patch, over the normal force [m]
@@ -103,8 +104,12 @@ inline void Spring::compress(double deep, double& pressed, double& steepness) co
 //
 //     d+ = max(0, d - tau v)              q+ = s + tau P u               at the step's end
 //     N  = k p(d+) (1 - r^2)              r  = min(1, max(0, v) fade)    Eqs. 16, 17; the fade is ours
-//     F  = -N n + k q+ min(1, L / k|q+|)  L  = mu N + bond               Eqs. 18 to 20, Coulomb's disc
+//     F  = -N n + k_s q+ min(1, L / k_s|q+|)  L = mu N + bond            Eqs. 18 to 20, Coulomb's disc
 //     T  = clamp(k_t (theta + tau spin), -L_t, L_t)                      soft finger: L_t = 2/3 mu a N
+//
+// k_s is k p(d) / d of the pad at the start of the step, so shear and pressure grow together (Mindlin 1949):
+// a finger that presses a slope of the angle a has F / N = tan a from the first touch on. With k it would
+// slip at first, on any slope.
 //
 // F and T act on body 2. While L and L_t are held, they are the gradient by u and spin of a convex function,
 // potential(). With L a function of N no such function exists, so the limits are those of the last iterate.
@@ -119,7 +124,7 @@ inline void Spring::compress(double deep, double& pressed, double& steepness) co
 // Newton's method needs the slopes by the velocity of 2, where u = u_1 - u_2:
 //
 //     -dF/du_2 = tau k p' (1 - r^2) n n' + 2 k p r fade n n'    along n, where N > 0
-//              + tau k P                             sticking
+//              + tau k_s P                           sticking
 //              + tau L / |q+| (P - q q' / q'q)       slipping, q = q+: it turns but grows no more
 //     -dT/dspin_2 = tau k_t, or 0 at the limit
 //
@@ -151,8 +156,8 @@ inline void Spring::respond(const Triple& u, double spin, bool renew_limits, Spr
   response.drawn = stretch + ahead * (u - rate * normal);
   // Squared sizes are compared, so the root is taken only if the contact slips.
   response.drawn_squared = response.drawn.dot(response.drawn);
-  response.trial_squared = stiffness * stiffness * response.drawn_squared;
-  double secant = stiffness;
+  response.trial_squared = shear * shear * response.drawn_squared;
+  double secant = shear;
   const bool slips = response.trial_squared > slip_limit * slip_limit;
   // A slipping spring has its limit force at any stretch.
   if (slips) secant = slip_limit / std::sqrt(std::max(response.drawn_squared, 1e-300));

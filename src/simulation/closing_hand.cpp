@@ -12,7 +12,7 @@ constexpr double kMinClosingSpeed = 0.03;
 constexpr double kMinClosingRatio = 0.25;
 /// Largest distance of a body from the line between a finger and its base [m].
 constexpr double kMaxLineDistance = 0.01;
-/// Largest distance at which the faces under finger and base are searched [m].
+/// Largest distance at which a hand's closest faces are searched [m].
 constexpr double kSearchDistance = 0.1;
 /// Largest cosine between the normals of these faces. A fingertip that taps a cube has the thumb beside the
 /// adjacent face.
@@ -30,18 +30,12 @@ bool has_tip(const Hand& hand, int finger) {
   return hand.has(capsule_index(finger, 3));
 }
 
-double ClosingHand::closing_speed(const HandTrack& track, bool by_palm, int finger) {
+bool ClosingHand::closes(const HandTrack& track, bool by_palm, int finger) {
   const Vector3 across = tip_of(track.current, finger) - base_of(track.current, by_palm);
   const auto& points = track.mean_velocity.points;
-  const Vector3 apart = points[tip_point(finger)] - points[by_palm ? 0 : tip_point(0)];
-  return -across.dot(apart) / std::max(across.norm(), 1e-30);
-}
-
-bool ClosingHand::closes(const HandTrack& track, bool by_palm, int finger) {
-  const auto& points = track.mean_velocity.points;
-  const double tip = points[tip_point(finger)].norm(), base = points[by_palm ? 0 : tip_point(0)].norm();
-  return closing_speed(track, by_palm, finger) >
-         std::max(kMinClosingSpeed, kMinClosingRatio * std::max(tip, base));
+  const Vector3 &tip = points[tip_point(finger)], &base = points[by_palm ? 0 : tip_point(0)];
+  const double least = std::max(kMinClosingSpeed, kMinClosingRatio * std::max(tip.norm(), base.norm()));
+  return -across.dot(tip - base) > least * across.norm();
 }
 
 std::optional<ClosingHand::Nearest> ClosingHand::nearest(const Capsule& capsule, const Object& object,
@@ -60,7 +54,8 @@ std::optional<ClosingHand::Nearest> ClosingHand::nearest(const Capsule& capsule,
 }
 
 double ClosingHand::gap(const Hand& hand, bool by_palm, bool of_base, const Object& object,
-                        const Poses& poses, double limit) const {
+                        const Poses& poses) const {
+  double limit = kSearchDistance;
   for (int c = 0; c < kCapsules; ++c) {
     if (!hand.has(c) || is_base(by_palm, c) != of_base) continue;
     const auto found = nearest(hand.capsules[c], object, poses, limit);
@@ -69,35 +64,33 @@ double ClosingHand::gap(const Hand& hand, bool by_palm, bool of_base, const Obje
   return limit;
 }
 
-bool ClosingHand::on_opposite_faces(const Hand& hand, bool by_palm, int finger, const Object& object,
+bool ClosingHand::on_opposite_faces(const Hand& hand, int finger, const Object& object,
                                     const Poses& poses) const {
   const auto under = [&](int capsule) {
     return nearest(hand.capsules[capsule], object, poses, kSearchDistance);
   };
-  const auto tip = under(capsule_index(finger, 3)), base = under(by_palm ? kPalm : capsule_index(0, 3));
+  const auto tip = under(capsule_index(finger, 3)), base = under(capsule_index(0, 3));
   return tip && base && tip->features.normal.dot(base->features.normal) < kMaxOpposingCosine;
 }
 
-bool ClosingHand::closes_on(const HandTrack& track, bool by_palm, int finger, const Object& object,
+bool ClosingHand::closes_on(const HandTrack& track, int finger, const Object& object,
                             const Poses& poses) const {
-  if (!closes(track, by_palm, finger)) return false;
+  if (!closes(track, false, finger)) return false;
   const Hand& hand = track.current;
-  const Capsule line{base_of(hand, by_palm), tip_of(hand, finger), 0.0};
+  const Capsule line{base_of(hand, false), tip_of(hand, finger), 0.0};
   bool is_far = true;
   for (std::size_t i = 0; i < object.size(); ++i) {
     const Body& body = scene_.bodies[object[i]];
     is_far = is_far && distance_from_axis(poses[i].position, line) > body.bounding_radius + kMaxLineDistance;
   }
   return !is_far && nearest(line, object, poses, kMaxLineDistance) &&
-         on_opposite_faces(hand, by_palm, finger, object, poses);
+         on_opposite_faces(hand, finger, object, poses);
 }
 
 bool ClosingHand::closes_on(const HandTrack& track, const Object& object, const Poses& poses) const {
-  for (const bool by_palm : {false, true})
-    for (int finger = by_palm ? 0 : 1; finger < kFingers; ++finger)
-      if (has_tip(track.current, finger) && (by_palm || has_tip(track.current, 0)) &&
-          closes_on(track, by_palm, finger, object, poses))
-        return true;
+  if (!has_tip(track.current, 0)) return false;
+  for (int finger = 1; finger < kFingers; ++finger)
+    if (has_tip(track.current, finger) && closes_on(track, finger, object, poses)) return true;
   return false;
 }
 

@@ -27,17 +27,13 @@ class ClosingHand {
   /// Keeps references.
   ClosingHand(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
 
-  /// True if a finger closes on the object, which lies between it and its base.
+  /// True if a finger closes on the object, which lies between it and the thumb.
   bool closes_on(const HandTrack& track, const Object& object, const Poses& poses) const;
-  /// Distance from the object to one side of a grip, its base or its fingers: negative inside, at most
-  /// `limit` [m].
-  double gap(const Hand& hand, bool by_palm, bool of_base, const Object& object, const Poses& poses,
-             double limit) const;
+  /// Distance from the object to one side of a grip, its base or its fingers: negative inside, limited [m].
+  double gap(const Hand& hand, bool by_palm, bool of_base, const Object& object, const Poses& poses) const;
   /// True if the aperture between the finger's tip and its base is shrinking, as opposed to changing because
   /// the hand moves.
   static bool closes(const HandTrack& track, bool by_palm, int finger);
-  /// Mean speed at which the aperture between the finger's tip and its base shrinks [m/s].
-  static double closing_speed(const HandTrack& track, bool by_palm, int finger);
 
  private:
   /// The closest point of an object, and its body.
@@ -45,12 +41,10 @@ class ClosingHand {
     ClosestFeatures features;
     int body;
   };
-  bool closes_on(const HandTrack& track, bool by_palm, int finger, const Object& object,
-                 const Poses& poses) const;
+  bool closes_on(const HandTrack& track, int finger, const Object& object, const Poses& poses) const;
   std::optional<Nearest> nearest(const Capsule& capsule, const Object& object, const Poses& poses,
                                  double margin) const;
-  bool on_opposite_faces(const Hand& hand, bool by_palm, int finger, const Object& object,
-                         const Poses& poses) const;
+  bool on_opposite_faces(const Hand& hand, int finger, const Object& object, const Poses& poses) const;
 
   const Scene& scene_;
   const ContactFinder& finder_;

@@ -15,7 +15,7 @@ constexpr double kBuriedDepth = 0.015;
 /// Compliance, beyond its depth, of a hand inside a body that it must not grasp: more than any finger moves
 /// in a step, so that it applies no force within the step either [m].
 constexpr double kNoForceCompliance = 1.0;
-/// Rate at which a finger that has stopped without an opposing contact regains its force [m/s].
+/// Rate at which a finger that has stopped or is opposed regains its force [m/s].
 constexpr double kRecoverySpeed = 0.03;
 /// Distance of a body from its place in the hand at which the grip becomes active [m].
 constexpr double kMaxOffset = 0.0015;
@@ -23,22 +23,25 @@ constexpr double kMaxOffset = 0.0015;
 constexpr double kMeanAperture = 0.05;
 /// A single frame's aperture counts beyond this multiple of the tracker's noise.
 constexpr double kNoiseMargin = 4.0;
-/// The hand has released the body once it has opened by this fraction of the distance to touch_aperture, and
-/// by this [m], and both sides together are within kPadDepth of clearance.
+/// The hand has released the body if the gaps between both sides and the body sum to this clearance [m],
+constexpr double kReleaseClearance = 0.001;
+/// or to -kPadDepth, once it has opened by this fraction of the distance to touch_aperture, and by this [m].
 constexpr double kReleaseFraction = 0.9, kMinRelease = 0.015;
-/// Or by this, if the gaps between both sides and the body sum to this clearance [m].
-constexpr double kMinOpening = 0.0015, kReleaseClearance = 0.001;
-/// Fingers that have opened by this fraction of that distance, or open faster, do not carry the body [m/s].
-constexpr double kOpensFraction = 0.5, kOpensSpeed = 1.0;
-/// A hand that is farther from a body than this has left it, whatever its fingers do [m].
-constexpr double kMaxDistance = 0.02;
+/// Fingers that have opened by this fraction of that distance do not carry the body.
+constexpr double kOpensFraction = 0.5;
+/// A grip that has lost a side does not become active once the hand has opened by this [m].
+constexpr double kMinOpening = 0.0015;
+/// No grip becomes active while its fingers open faster than this [m/s].
+constexpr double kOpensSpeed = 1.0;
 /// A grip waits this long for a lost hand [s]. It continues if the hand returns within this of the pose in
 /// which it held the body [m], [rad].
 constexpr double kMaxLoss = 1.05, kReturnDistance = 0.03, kReturnAngle = 0.5;
 /// Stiffness of a grip over that of a contact: several fingers, on two sides.
 constexpr double kStiffnessRatio = 5.0;
-/// Limits of the distance from the springs to their centre [m].
-constexpr double kMinReach = 0.04, kMaxReach = 0.06;
+/// Distance from the springs to their centre [m].
+constexpr double kReach = 0.04;
+/// Time constant at which a grip's springs yield to the contacts [s].
+constexpr double kYieldTime = 0.1;
 /// Bond of a hand of unlimited strength [N].
 constexpr double kUnlimitedBond = 1e5;
 
@@ -60,18 +63,6 @@ double opened_by(const HandTrack& track, double seconds, Grip& grip) {
   grip.mean_aperture = std::clamp(grip.mean_aperture, now - margin, now + margin);
   grip.min_aperture = std::min(grip.min_aperture, grip.mean_aperture);
   return grip.mean_aperture - grip.min_aperture;
-}
-
-/// Mean speed at which the grip's fingers open [m/s].
-double opening_speed(const HandTrack& track, const Grip& grip) {
-  double sum = 0.0;
-  int count = 0;
-  for (int finger = 0; finger < kFingers; ++finger) {
-    if (!grip.takes_part(finger)) continue;
-    sum -= ClosingHand::closing_speed(track, grip.by_palm, finger);
-    ++count;
-  }
-  return sum / count;
 }
 
 /// True if the fingers opened fast in the last frame, beyond the tracker's noise.
@@ -100,24 +91,9 @@ Pose grip_pose(const Grip& grip) {
   return grip.in_palm * Pose{fit->to - fit->rotation * fit->from, Quaternion(fit->rotation)};
 }
 
-/// True if a hand that is seen again elsewhere, still closed, may yet return to the body.
+/// True if a hand that is seen again elsewhere may yet return to the body.
 bool may_return(const HandTrack& track, const Grip& grip) {
-  return to_seconds(track.last_seen - *grip.lost) <= kMaxLoss &&
-         aperture(grip, track.current) - grip.min_aperture <= kMinRelease;
-}
-
-/// Copies the pads of the former fingers to a grip that is taken again. Those of new fingers start where they
-/// are.
-void keep_pads(const Grip& before, const Hand& from, Grip& grip) {
-  grip.pads = before.pads;
-  if (grip.fingers == before.fingers && grip.by_palm == before.by_palm) return;
-  const DistalEnds here = distal_ends(from);
-  const Pose in_palm = moved_in_palm(before, from);
-  for (std::size_t i = 0; i < here.size(); ++i) {
-    const auto finger = static_cast<int>(i / 2);
-    const bool took_part = before.takes_part(finger) || (finger == 0 && !before.by_palm);
-    if (!took_part) grip.pads[i] = in_palm.to_local(here[i]);
-  }
+  return to_seconds(track.last_seen - *grip.lost) <= kMaxLoss;
 }
 
 }  // namespace
@@ -154,12 +130,7 @@ void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, Simu
   seconds_ = seconds;
   closing_.clear();
   if (!objects_.any_graspable()) return state.grips.clear();
-  const auto is_over = [&](Grip& grip) {
-    const bool was_released = grip.released;
-    if (ends(state, grip)) return true;
-    if (grip.released && !was_released) relax_contacts(grip, state);
-    return false;
-  };
+  const auto is_over = [&](Grip& grip) { return ends(state, grip); };
   state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), is_over), state.grips.end());
   for (Grip& grip : state.grips)
     if (!grip.lost) follow(state, grip);
@@ -207,13 +178,11 @@ bool GraspAssist::resumes(const SimulationState& state, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
   const Pose pose = operators_.in_hands_frame(grip.hand, grip.body, state);
   const Pose in_palm = track.current.palm.inverse() * pose;
-  const double now = aperture(grip, track.current);
   if ((in_palm.position - grip.body_in_palm.position).norm() > kReturnDistance ||
-      in_palm.orientation.angularDistance(grip.body_in_palm.orientation) > kReturnAngle ||
-      now - grip.min_aperture > kMinRelease)
+      in_palm.orientation.angularDistance(grip.body_in_palm.orientation) > kReturnAngle)
     return false;
   grip.lost.reset();
-  grip.mean_aperture = now;
+  grip.mean_aperture = aperture(grip, track.current);
   grip.pads = distal_ends(track.current);
   grip.in_palm = Pose();
   for (std::size_t i = 0; i < kGripPoints; ++i)
@@ -247,33 +216,17 @@ bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
   return !grip.released;
 }
 
-/// Ends the forces of the grip's contacts.
-void GraspAssist::relax_contacts(const Grip& grip, SimulationState& state) const {
-  for (Contact& contact : state.contacts) {
-    const bool of_grip =
-        is_base(grip.by_palm, contact.key.capsule) ||
-        (!is_base(true, contact.key.capsule) && grip.takes_part(finger_of(contact.key.capsule)));
-    if (of_grip && objects_.is_in(grip, contact.key.hand, contact.key.body))
-      contact.compliance = std::max(contact.depth, 0.0);
-  }
-}
-
 /// True if the hand has opened enough to release the body, or has left it.
 bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
   grip.opened = opened_by(track, seconds_, grip);
-  grip.opens =
-      opening_speed(track, grip) > kOpensSpeed || grip.opened > release_opening(grip, kOpensFraction);
   const bool is_wide = grip.opened > release_opening(grip, kReleaseFraction);
   if (touching.both() && !is_wide) return false;
   const auto gap = [&](bool of_base) {
     return closing_hand_.gap(track.current, grip.by_palm, of_base, objects_.object_of(grip.body),
-                             poses_of(grip.hand, grip.body, state), kMaxDistance);
+                             poses_of(grip.hand, grip.body, state));
   };
-  const double base = gap(true), fingers = gap(false);
-  const double clearance = base + fingers - 0.5 * noise_margin(track);
-  return (grip.opened > kMinOpening && clearance > kReleaseClearance) ||
-         (is_wide && clearance > -kPadDepth) || std::min(base, fingers) >= kMaxDistance;
+  return gap(true) + gap(false) > (is_wide ? -kPadDepth : kReleaseClearance);
 }
 
 /// Moves the grip with its fingers, unless they open.
@@ -281,7 +234,7 @@ void GraspAssist::follow(SimulationState& state, Grip& grip) {
   const HandTrack& track = state.hands[grip.hand];
   grip.closes = still_closes(track, grip);
   grip.in_palm_before = grip.in_palm;
-  if (!grip.opens) grip.in_palm = moved_in_palm(grip, track.current);
+  if (grip.opened <= release_opening(grip, kOpensFraction)) grip.in_palm = moved_in_palm(grip, track.current);
   if (!grip.active) return;
   if (grip.closes && scene_.bodies[grip.body].flies) closing_.push_back({grip.hand, grip.body});
   // A hand that is rendered before a fixture does not collide with what it holds there.
@@ -325,15 +278,12 @@ std::vector<Grip>::iterator GraspAssist::find_grip(std::size_t slot, std::size_t
                       [&](const Grip& grip) { return objects_.is_in(grip, slot, body); });
 }
 
-/// Begins a grip. A body that was acquired before and needed no support keeps its place in the hand.
-/// The springs of a grip on a linkage act on the link that the thumb or the palm touches.
+/// Begins a grip, in place of one that has fewer fingers. The springs of a grip on a linkage act on the link
+/// that the thumb or the palm touches.
 void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, double fraction,
                        SimulationState& state) const {
-  const auto known = find_grip(slot, opposing.body, state);
-  const bool is_new = known == state.grips.end();
-  const std::size_t b = is_new ? opposing.body : known->body;
+  const std::size_t b = opposing.body;
   const Hand &from = state.hands[slot].previous, &to = state.hands[slot].current;
-  const Pose pose = operators_.in_hands_frame(slot, b, state);
   const Material& material = scene_.bodies[b].material;
   Grip grip;
   grip.hand = static_cast<std::uint8_t>(slot);
@@ -341,6 +291,11 @@ void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, doubl
   grip.released = objects_.mode_of(b) == GraspMode::never;
   grip.by_palm = opposing.by_palm;
   grip.fingers = opposing.fingers_mask;
+  const auto known = find_grip(slot, b, state);
+  if (known != state.grips.end()) {
+    if (known->by_palm == grip.by_palm) grip.fingers |= known->fingers;
+    state.grips.erase(known);
+  }
   grip.min_aperture = grip.mean_aperture = aperture(grip, from);
   const double now = grip.min_aperture + fraction * (aperture(grip, to) - grip.min_aperture);
   grip.touch_aperture = std::max(grip.min_aperture, now + opposing.squeeze);
@@ -353,41 +308,26 @@ void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, doubl
   grip.bond = std::min(2.0 * material.static_friction * force, kUnlimitedBond) / kGripPoints;
   grip.stiffness = kStiffnessRatio * material.stiffness / kGripPoints;
   const Vector3 centre = 0.5 * (opposing.base + opposing.fingers);
-  const double reach = std::clamp(0.5 * (opposing.base - opposing.fingers).norm(), kMinReach, kMaxReach);
   for (std::size_t i = 0; i < kGripPoints; ++i) {
     const Vector3 corner(i % 2 == 0 ? -1 : 1, i < 2 ? -1 : 1, i == 0 || i == 3 ? 1 : -1);
-    const Vector3 point = centre + reach / std::sqrt(3.0) * corner;
-    grip.in_hand[i] = from.palm.to_local(point);
-    grip.in_body[i] = pose.to_local(point);
+    grip.in_hand[i] = from.palm.to_local(centre + kReach / std::sqrt(3.0) * corner);
   }
-  if (is_new) {
-    grip.pads = distal_ends(from);
-  } else {
-    grip.min_aperture = std::min(grip.min_aperture, known->min_aperture);
-    if (known->by_palm == grip.by_palm) grip.fingers |= known->fingers;
-    grip.in_hand = known->in_hand, grip.in_body = known->in_body;
-    keep_pads(*known, from, grip);
-  }
+  grip.pads = distal_ends(from);
   grip.in_palm_before = moved_in_palm(grip, from);
   grip.in_palm = moved_in_palm(grip, to);
   place(fraction, fraction, state.hands[slot], grip);
-  if (is_new)
-    for (std::size_t i = 0; i < kGripPoints; ++i)
-      grip.in_body[i] = state.bodies[b].pose.to_local(grip.point[i]);
+  for (std::size_t i = 0; i < kGripPoints; ++i)
+    grip.in_body[i] = state.bodies[b].pose.to_local(grip.point[i]);
   const auto after = [](const Grip& x, const Grip& y) {
     return x.hand < y.hand || (x.hand == y.hand && x.body < y.body);
   };
-  if (is_new) {
-    state.grips.insert(std::lower_bound(state.grips.begin(), state.grips.end(), grip, after), grip);
-  } else {
-    *known = grip;
-  }
+  state.grips.insert(std::lower_bound(state.grips.begin(), state.grips.end(), grip, after), grip);
 }
 
 /// Sets the contact's compliance. A finger that closes on a body touches it lightly until another part of the
 /// hand opposes it, and so does a hand that has released it: the finger's own motion adds no force. It
 /// resists the body's motion, so it still carries what it carried, and what falls onto it. A finger that has
-/// stopped without an opposing contact regains its force slowly.
+/// stopped, or is opposed, regains its force slowly.
 void GraspAssist::set_compliance(const SimulationState& state, double step, Contact& contact) const {
   const bool released = std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
     return grip.released && objects_.is_in(grip, contact.key.hand, contact.key.body);
@@ -396,10 +336,9 @@ void GraspAssist::set_compliance(const SimulationState& state, double step, Cont
   const bool closes = std::any_of(closing_.begin(), closing_.end(), [&](const ClosingPair& pair) {
     return pair.hand == contact.key.hand && objects_.same_object(pair.body, contact.key.body);
   });
-  const bool opposed = closes && objects_.is_opposed(contact, state.contacts);
   const double kept = std::min(contact.compliance, std::max(contact.depth, 0.0));
-  if (!released && (!closes || opposed)) {
-    contact.compliance = opposed ? 0.0 : std::max(kept - kRecoverySpeed * step, 0.0);
+  if (!released && (!closes || objects_.is_opposed(contact, state.contacts))) {
+    contact.compliance = std::max(kept - kRecoverySpeed * step, 0.0);
     return;
   }
   contact.struck = true;
@@ -430,6 +369,26 @@ void GraspAssist::place(double fraction, double until, const HandTrack& track, G
       grip.velocity[i] = carrier->rotation * grip.velocity[i] + carrier->velocity(grip.point[i]);
     }
   }
+}
+
+/// Leaves to the contacts what they do alone: the springs' mean extension fades in the direction in which
+/// base and fingers press the body, and where it opposes their friction.
+void GraspAssist::yield_to_contacts(double step, const SimulationState& state, Grip& grip) const {
+  Vector3 line = Vector3::Zero(), friction = Vector3::Zero();
+  for (const Contact& contact : state.contacts) {
+    if (!contact.touching() || !objects_.is_in(grip, contact.key.hand, contact.key.body)) continue;
+    line += is_base(grip.by_palm, contact.key.capsule) ? contact.normal : -contact.normal;
+    friction += contact.force - contact.normal.dot(contact.force) * contact.normal;
+  }
+  line.normalize(), friction.normalize();
+  const Pose& pose = state.bodies[grip.body].pose;
+  Vector3 extension = Vector3::Zero();
+  for (std::size_t i = 0; i < kGripPoints; ++i)
+    extension += (grip.point[i] - pose * grip.in_body[i]) / kGripPoints;
+  Vector3 needless = extension.dot(line) * line;
+  needless += std::min((extension - needless).dot(friction), 0.0) * friction;
+  const Vector3 yielded = pose.orientation.conjugate() * (std::min(step / kYieldTime, 1.0) * needless);
+  for (Vector3& end : grip.in_body) end += yielded;
 }
 
 /// Leaves the joints of a linkage to the fingers: the springs resist only the mean motion of the links that
@@ -491,9 +450,10 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
     const bool lost = touching ? objects_.slips(grip, state.contacts) ||
                                      !objects_.is_opposed(grip.hand, grip.body, grip.by_palm, state.contacts)
                                : grip.opened <= kMinOpening;
-    if (!grip.active && (!lost || grip.opens || grip.released || grip.lost)) continue;
+    if (!grip.active && (!lost || grip.released || grip.lost)) continue;
     place(fraction, until, state.hands[grip.hand], grip);
     leave_joints_free(step, state, grip);
+    if (grip.active) yield_to_contacts(step, state, grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;
     if (opens_now(state.hands[grip.hand], seconds_, grip)) continue;
     grip.active = true;

@@ -47,7 +47,6 @@ class GraspAssist {
   bool ends(const SimulationState& state, Grip& grip) const;
   bool resumes(const SimulationState& state, Grip& grip) const;
   bool opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const;
-  void relax_contacts(const Grip& grip, SimulationState& state) const;
   bool is_held_elsewhere(const SimulationState& state, const Grip& grip) const;
   void follow(SimulationState& state, Grip& grip);
   std::vector<Grip>::iterator find_grip(std::size_t slot, std::size_t body, SimulationState& state) const;
@@ -55,6 +54,7 @@ class GraspAssist {
   void take(std::size_t slot, const OpposingContacts& opposing, double fraction,
             SimulationState& state) const;
   void place(double fraction, double until, const HandTrack& track, Grip& grip) const;
+  void yield_to_contacts(double step, const SimulationState& state, Grip& grip) const;
   void leave_joints_free(double step, SimulationState& state, Grip& grip) const;
   double offset(const SimulationState& state, const Grip& grip) const;
   void set_compliance(const SimulationState& state, double step, Contact& contact) const;

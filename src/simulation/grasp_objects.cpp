@@ -10,8 +10,6 @@ namespace {
 
 /// Largest cosine between the normals of contacts on opposite faces.
 constexpr double kMaxOpposingCosine = -0.3;
-/// Largest angle of opposing normals from opposite, whatever the friction [rad].
-constexpr double kMaxOpposingAngle = 1.5;
 
 GraspMode resolved_mode(const Scene& scene, int body, const Configuration& configuration) {
   const bool is_implicit = configuration.contact_model == ContactModelKind::implicit;
@@ -89,8 +87,8 @@ void GraspObjects::each_opposed(std::size_t hand, std::size_t body, bool by_palm
           is_base(by_palm, other.key.capsule))
         continue;
       const double cosine = base.normal.dot(other.normal);
-      if (cosine >= 0.0) continue;  // spares the costlier test below
-      if (cosine > -std::cos(std::min(angle + friction_angle_[other.key.body], kMaxOpposingAngle))) continue;
+      if (cosine >= 0.0) continue;  // whatever the friction
+      if (cosine > -std::cos(angle + friction_angle_[other.key.body])) continue;
       if (!see(base, other, cosine)) return;
     }
   }

@@ -17,7 +17,7 @@ namespace mrhi {
 namespace {
 
 /// Format version. Changes whenever the order or meaning of the bytes does.
-constexpr std::uint64_t kFormat = 0x6d72686900000008ull;
+constexpr std::uint64_t kFormat = 0x6d72686900000009ull;
 
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +
@@ -326,13 +326,13 @@ class Parts {
   }
   void one(Grip& part) {
     auto& [body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, stiffness, active,
-           released, lost, body_in_palm, closes, opened, opens, pads, in_palm_before, in_palm, slips, in_hand,
+           released, lost, body_in_palm, closes, opened, pads, in_palm_before, in_palm, slips, in_hand,
            in_body, force, torque, point, velocity] = part;
     all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, active, released);
     aside(lost);
     if (!Visitor::kHashes || lost) one(body_in_palm);
     all(pads, in_palm, in_hand, in_body);
-    aside(stiffness, closes, opened, opens, in_palm_before, slips, force, torque, point, velocity);
+    aside(stiffness, closes, opened, in_palm_before, slips, force, torque, point, velocity);
   }
   void one(Interaction& part) {
     auto& [level, agreed, shown_in] = part;

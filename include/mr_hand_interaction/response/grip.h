@@ -32,7 +32,6 @@ struct Grip {
   Pose body_in_palm;                ///< at the stamp `lost`
   bool closes = true;               ///< the hand is still closing
   double opened = 0.0;              ///< increase of the aperture since its minimum [m]
-  bool opens = false;               ///< the hand is opening: the grip does not follow its fingers
   DistalEnds pads{};                ///< at the start of the grip, palm frame [m]
   Pose in_palm_before;              ///< at the start of the frame: pose of the initial palm frame in the palm
   Pose in_palm;                     ///< likewise at the end of the frame
