@@ -4,7 +4,7 @@ standard messages."""
 import numpy
 import pandas
 
-from .grip import FINGERS, PALM, summed
+from .grip import FINGERS, PALM, mean_forces, summed
 from .tables import vectors, write_text
 
 SIDES = ('left', 'right')
@@ -19,7 +19,8 @@ class Body:
 
     def __init__(self, count):
         self.pose = numpy.full((count, 7), numpy.nan)
-        self.wrench = numpy.zeros((count, 6))  # force of all hands [N], torque about the centre of mass [N m]
+        # Force of all hands [N] and torque about the centre of mass [N m]: means since the frame before, with impulses.
+        self.wrench = numpy.zeros((count, 6))
         self.held = numpy.zeros(count, int)
         self.bones = numpy.full((count, len(BONES), 6), numpy.nan)  # start and end [m]
 
@@ -27,10 +28,9 @@ class Body:
         return ~numpy.isnan(self.pose[:, 0])
 
     def between(self, before, after, fraction, unit):
-        """At times between two frames; forces and held are those of the frame before. `unit`: orientations are normalised."""
+        """At times between two frames; held is that of the frame before. `unit`: orientations are normalised."""
         body = Body(len(before))
-        body.pose, body.wrench, body.held, body.bones = (
-            values[before].copy() for values in (self.pose, self.wrench, self.held, self.bones))
+        body.pose, body.held, body.bones = (values[before].copy() for values in (self.pose, self.held, self.bones))
         both = self.is_there()[before] & self.is_there()[after] & (fraction > 0.0)
         a, b, t = before[both], after[both], fraction[both][:, None]
         body.pose[both, :3] += t * (self.pose[b, :3] - self.pose[a, :3])
@@ -53,6 +53,13 @@ def _slerp(a, b, t):
     return scale_a * a + numpy.where(dot < 0.0, -scale_b, scale_b) * b
 
 
+def _means(wrench, stamps, times):
+    """Means of a wrench since the time before, from its means since the stamp before: the integral stays the same."""
+    integral = numpy.cumsum(wrench * numpy.diff(stamps, prepend=stamps[0])[:, None], axis=0)
+    integral = numpy.column_stack([numpy.interp(times, stamps, column) for column in integral.T])
+    return numpy.vstack([wrench[:1], numpy.diff(integral, axis=0) / numpy.diff(times)[:, None]])
+
+
 class Demonstration:
     """Bodies by frame; the frames since the recording's stamps last began anew."""
 
@@ -67,13 +74,15 @@ class Demonstration:
         before = numpy.where(self.stamps[after] == stamps, after, after - 1)
         step = numpy.maximum(self.stamps[after] - self.stamps[before], 1)
         fraction = (stamps - self.stamps[before]) / step
+        objects = {name: body.between(before, after, fraction, False) for name, body in self.objects.items()}
+        for name, body in objects.items():
+            body.wrench = _means(self.objects[name].wrench, self.stamps, stamps)
         events, told = [], 0
         for count in numpy.searchsorted(self.stamps, stamps, side='right'):
             events.append([event for frame in self.events[told:count] for event in frame])
             told = count
         return Demonstration(
-            stamps, {name: body.between(before, after, fraction, False) for name, body in self.objects.items()},
-            {side: body.between(before, after, fraction, True) for side, body in self.hands.items()}, events)
+            stamps, objects, {side: body.between(before, after, fraction, True) for side, body in self.hands.items()}, events)
 
     def table(self):
         columns = {'time': (self.stamps - self.stamps[0]) / 1e9}
@@ -99,7 +108,7 @@ def demonstration_of(run):
     stamps = run.frames['stamp'].to_numpy()
     begins = numpy.flatnonzero(numpy.diff(stamps) <= 0)
     first = int(begins[-1]) + 1 if len(begins) else 0
-    count = len(stamps) - first
+    count, step = len(stamps) - first, numpy.diff(stamps[first:], prepend=stamps[first]) / 1e9
 
     def since(table):
         """Rows of the frames that count, and their place among these."""
@@ -110,7 +119,7 @@ def demonstration_of(run):
     table, _ = since(run.objects)
     contacts, _ = since(run.contacts)
     for name, rows in table.groupby('name'):
-        objects[name] = _object(since(rows), since(contacts[contacts['object'] == name]), count)
+        objects[name] = _object(since(rows), since(contacts[contacts['object'] == name]), step)
     palms, _ = since(run.palms.drop_duplicates(['frame', 'side']))
     for side in sorted(palms['side'].unique()):
         hands[SIDES[side]] = _hand(since(palms[palms['side'] == side]), since(run.phalanges), count)
@@ -121,13 +130,14 @@ def demonstration_of(run):
     return Demonstration(stamps[first:], objects, hands, events)
 
 
-def _object(table, contacts, count):
-    body, (rows, place), (touches, contact_place) = Body(count), table, contacts
+def _object(table, contacts, step):
+    """`step`: time since the frame before [s]."""
+    body, (rows, place), (touches, contact_place) = Body(len(step)), table, contacts
     body.pose[place] = vectors(rows, POSE)
     body.held[place] = rows['held'].to_numpy()
-    force = vectors(touches, ('fx', 'fy', 'fz'))
+    force = mean_forces(touches, step[contact_place])
     arm = vectors(touches, ('x', 'y', 'z')) - body.pose[contact_place, :3]
-    body.wrench = summed(contact_place, numpy.hstack([force, numpy.cross(arm, force)]), count)
+    body.wrench = summed(contact_place, numpy.hstack([force, numpy.cross(arm, force)]), len(step))
     return body
 
 

@@ -59,6 +59,12 @@ def summed(group, values, count):
     return total
 
 
+def mean_forces(contacts, step):
+    """Forces of contacts [N] with their impulses, as means over `step`: the time since the frame before, for each contact [s]."""
+    step = numpy.where(step > 0.0, step, numpy.inf)[:, None]
+    return vectors(contacts, ('fx', 'fy', 'fz')) + vectors(contacts, ('jx', 'jy', 'jz')) / step
+
+
 def rotated_back(quaternion, vector):
     """From world into the frame of this orientation (x, y, z, w)."""
     axis, w = -quaternion[:3], quaternion[3]

@@ -21,6 +21,11 @@ MAX_BREAK = 0.06  # s; touches with a shorter break are one stay
 BEFORE_LOSS = 0.15  # s from a picture to the loss
 SLIDE_MARGIN = 0.03  # s, by which an opening may begin after all fingers slide
 
+# Events that end a hold whatever the fingers do: kind, cause, sentence.
+ENDS = (('HAND_LOST', 'tracking_lost', 'the tracker lost the hand, which released it'),
+        ('OUT_OF_BOUNDS', 'out_of_bounds', "it left the scene's bounds, and was reset to its start"),
+        (evidence.JUMP, 'hand_jumped', 'the hand jumped, faster than tracking/max_speed, and released it'))
+
 # The end of a hold, or of a contact of two fingers. Times in s, forces in N.
 Loss = collections.namedtuple(
     'Loss', 'object hand_id grasped start until cause push load friction friction_needed push_needed bearable opened by text '
@@ -92,24 +97,31 @@ def _loss_of(stay, grasped, story):
         push_needed=max(0.0, load / max(thing.static_friction, 1e-3) - push),
         bearable=thing.bearable[stay.window:stay.touched + 1].min(), opened=None, by='', text='', grasp_end=_grasp_end(stay, story),
         frame=int(thing.frame[stay.touched]), assistance=evidence.assistance_in(stay))
-    cause, why, more = _cause_of(stay, loss, thing.time[slid], story)
+    cause, why, more = _cause_of(stay, loss, slid, story)
     loss = loss._replace(cause=cause, **more)
     return loss._replace(text=_story_of(loss, stay, why))
 
 
-def _cause_of(stay, loss, slid, story):
+def _cause_of(stay, loss, first_slid, story):
     """Cause, sentence, and further fields of the loss."""
-    thing, end = stay.thing, stay.time(stay.touched)
-    if evidence.tracking_was_lost(stay):
-        return 'tracking_lost', 'the tracker lost the hand, which released it', {}
-    impact = evidence.strongest_impact(stay, story)
-    if impact:
-        return 'impact', "'%s' hit it at %.2f s, with a momentum that changes its speed by %.3g m/s. %s" % (
-            impact.by, impact.time, impact.speed, _remedy(loss)), {'by': impact.by}
-    opening = evidence.opening_of(stay)
-    if opening and opening.begun <= slid + SLIDE_MARGIN:
+    thing, end, slid = stay.thing, stay.time(stay.touched), stay.time(first_slid)
+    events = evidence.events_at_end(stay, story)
+    for kind, cause, why in ENDS:
+        if kind in events:
+            return cause, why, {}
+    impact, opening = evidence.strongest_impact(stay, story, first_slid), evidence.opening_of(stay)
+    obstacle = None if thing.joint else evidence.obstacle_of(stay, story.gravity, first_slid, loss.load)
+    # Fingers also slide along what a hand puts down.
+    if opening and (obstacle or opening.begun <= slid + SLIDE_MARGIN) and not (impact and impact.time <= opening.clear):
         return 'hand_opened', 'the hand opened: its fingertips moved apart by %.3g mm, from %.2f s on' % (
             1e3 * opening.distance, opening.clear), {'opened': opening.clear}
+    if impact:
+        return 'impact', "'%s' hit it at %.2f s, with a momentum that changes its speed by %.3g m/s" % (
+            impact.by, impact.time, impact.speed), {'by': impact.by}
+    if evidence.was_unseen(stay):
+        return 'tracking_lost', 'the tracker did not see the hand, which kept its pose', {}
+    if obstacle:
+        return 'blocked', 'a fixture or another object held it back with %.3g N while the hand moved on at %.3g m/s' % obstacle, {}
     if loss.assistance and loss.assistance.until > end - ASSIST_END:
         return 'assist_ended', 'contact alone did not hold it, and the grasp assist that supported it ended', {}
     if thing.joint:

@@ -6,10 +6,10 @@ import math
 import numpy
 
 WINDOW = 0.6  # s before the last touch in which the cause is sought
-TRACKING_WINDOW = 0.5  # s; a lost hand may keep its pose for so long
-IMPACT_WINDOW, IMPACT_MARGIN = 0.4, 0.02  # s before and after the last touch
-MIN_IMPACT = 0.05  # m/s; smallest change of speed by another object that counts
+BEFORE_SLIDE, IMPACT_MARGIN = 0.05, 0.02  # s from an impact to the slide or loss that it causes; from the last touch to an impact
+MIN_IMPACT = 0.05  # m/s; smallest change of speed by another object, or a fixture, that counts
 IMPACT_REACH = 0.02  # m between bounding spheres; s of the change of speed
+JUMP = 'HAND_JUMP'  # beside the kinds of events
 MIN_OPENING = 0.003  # m; mean distance of the fingertips from their centre, over the stay
 MIN_BEGUN = 0.001  # m; smallest opening while the fingers still touch
 CLEAR = 0.1  # fraction of the opening at which the hand counts as open
@@ -18,6 +18,7 @@ SPAN = 0.02  # s before and after, for the palm's acceleration
 
 Impact = collections.namedtuple('Impact', 'by time speed')
 Opening = collections.namedtuple('Opening', 'begun clear distance')
+Obstacle = collections.namedtuple('Obstacle', 'force speed')  # mean force against the hand's motion [N]; the hand's speed [m/s]
 # First and last time [s]; mean force [N], and its share in the sum of it and of what all contacts together apply.
 Assistance = collections.namedtuple('Assistance', 'start until force share')
 
@@ -45,26 +46,64 @@ def total_normal_force(touches):
     return sum(max(touch.normal, 0.0) for touch in touches)
 
 
-def tracking_was_lost(stay):
-    hand, until = stay.hand, stay.time(stay.last)
-    seen = (hand.time >= stay.time(stay.touched) - TRACKING_WINDOW) & (hand.time <= until + 1e-9)
-    return bool(hand.lost[seen].any()) or hand.time[-1] < until - 1e-9
+def events_at_end(stay, story):
+    """Kinds of the events of hand and object, and JUMP, from the last touch to the next sample; none if the hold ended before."""
+    thing, end = stay.thing, stay.touched
+    since, until = stay.time(end) - 1e-6, stay.time(min(end + 1, len(thing.time) - 1)) + 1e-6
+    if thing.level[end] < thing.level[stay.first:end + 1].max():
+        return set()
+    kinds = {event.kind for event in story.events if since <= event.time <= until
+             and (event.object == thing.name or not event.object and event.hand_id == stay.hand_id)}
+    return kinds | {JUMP} if _jumps(stay.hand, since, until, story.max_hand_speed) else kinds
 
 
-def strongest_impact(stay, story):
-    """The strongest impact by an object that no hand touches, or None if none counts."""
+def _jumps(hand, since, until, max_speed):
+    """True if palm or a fingertip is faster than max_speed [m/s] from a frame with the hand to the next."""
+    seen = numpy.flatnonzero(~hand.lost)
+    times, distance = hand.time[seen], numpy.nanmax(numpy.linalg.norm(numpy.diff(hand.tips[seen], axis=0), axis=2), axis=1)
+    fast = distance > max_speed * numpy.diff(times)
+    return bool((fast & (times[1:] >= since) & (times[1:] <= until)).any())
+
+
+def was_unseen(stay):
+    """True if the tracker did not see the hand at the last touch."""
+    hand = stay.hand
+    return bool(hand.lost[numpy.abs(hand.time - stay.time(stay.touched)) < 1e-6].any())
+
+
+def obstacle_of(stay, gravity, slid, load):
+    """What held the object back more than its load did [N], while the hand moved on, from sample `slid` to the last touch; or None.
+    Its force is the object's change of momentum less what hands, grasp assist and gravity gave."""
+    thing, hand, back, most, behind = stay.thing, stay.hand, 0.0, 0.0, False
+    samples = range(max(slid, 1), min(stay.touched + 1, len(thing.time) - 1) + 1)
+    for i in samples:
+        step, at = thing.time[i] - thing.time[i - 1], int(numpy.searchsorted(hand.time, thing.time[i] - 1e-9))
+        if not 0 < at < len(hand.time) or hand.speed[at] <= 0.0:
+            continue
+        ahead = (hand.palm[at] - hand.palm[at - 1]) / _norm(hand.palm[at] - hand.palm[at - 1])
+        change = thing.velocity[i] - thing.velocity[i - 1] - step * (gravity + thing.force[i] / thing.mass)
+        back += max(0.0, -change @ ahead)
+        behind |= thing.velocity[i] @ ahead < 0.5 * hand.speed[at]
+        most = max(most, hand.speed[at])
+    force = thing.mass * back / max(thing.time[samples[-1]] - thing.time[samples[0] - 1], 1e-9)
+    return Obstacle(force, most) if behind and back >= MIN_IMPACT and force > load else None
+
+
+def strongest_impact(stay, story, slid):
+    """The strongest impact by an object that no hand touches, or None if none counts. Fingers slide from it on, or touch no more:
+    the hold survived an earlier one."""
     worst = Impact('', 0.0, 0.0)
     for name in sorted(story.objects):
         if name != stay.thing.name:
-            impact = _impact_by(stay, story.objects[name], story.gravity)
+            impact = _impact_by(stay, story.objects[name], story.gravity, stay.time(slid) - BEFORE_SLIDE)
             worst = impact if impact.speed > worst.speed else worst
     return worst if worst.speed >= MIN_IMPACT else None
 
 
-def _impact_by(stay, other, gravity):
+def _impact_by(stay, other, gravity, since):
     ours, worst = stay.thing, Impact(other.name, 0.0, 0.0)
     end = stay.time(stay.touched)
-    for i in numpy.flatnonzero((other.time >= end - IMPACT_WINDOW) & (other.time <= end + IMPACT_MARGIN)):
+    for i in numpy.flatnonzero((other.time >= since) & (other.time <= end + IMPACT_MARGIN)):
         if i == 0 or other.touches[i] or other.touches[i - 1]:
             continue
         our = int(numpy.searchsorted(ours.time, other.time[i]))

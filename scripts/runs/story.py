@@ -10,6 +10,7 @@ from .tables import vectors
 
 LEVELS = ('none', 'hover', 'contact', 'grasp')
 CONTACT, GRASP = 2, 3
+MAX_HAND_SPEED = 12.0  # m/s; default of tracking/max_speed: a faster hand has jumped
 KIND_OF_GRASP, KIND_OF_GRASP_END = 'GRASP_BEGIN', 'GRASP_END'
 
 JointStory = collections.namedtuple('JointStory', 'name body turns lower upper time position')
@@ -31,14 +32,18 @@ class ObjectStory:
         self.velocity = vectors(table, ('vx', 'vy', 'vz'))
         self.level = table['level'].to_numpy()
         self.assisted = table['assisted'].to_numpy() == 1
-        self.assist = numpy.linalg.norm(vectors(table, ('assist_fx', 'assist_fy', 'assist_fz')), axis=1)  # force [N]
+        assist = vectors(table, ('assist_fx', 'assist_fy', 'assist_fz'))
+        self.assist = numpy.linalg.norm(assist, axis=1)  # force [N]
         self._add_contacts(contacts)
+        self.force += assist
         self.state = self._states()
 
     def _add_contacts(self, contacts):
         sample = {frame: i for i, frame in enumerate(self.frame)}
         rows = numpy.array([sample.get(frame, -1) for frame in contacts['frame']], int)
         contacts, rows = contacts[rows >= 0], rows[rows >= 0]
+        step = numpy.diff(self.time, prepend=self.time[:1])
+        self.force = grip.summed(rows, grip.mean_forces(contacts, step[rows]), len(step))  # of hands and assist, by mean [N]
         touching = contacts['touching'].to_numpy() == 1
         held, held_rows = contacts[touching], rows[touching]
         self.touches = grip.touches_of(held, held_rows, self.orientation)
@@ -123,6 +128,7 @@ class Story:
     def __init__(self, run):
         self.run = run
         self.times = run.frames['time'].to_numpy()
+        self.max_hand_speed = run.parameter('tracking/max_speed', MAX_HAND_SPEED)
         self.gravity = vectors(run.frames, ('gx', 'gy', 'gz'))[-1] if len(run.frames) else numpy.zeros(3)
         bodies = run.bodies.drop_duplicates('name', keep='last').set_index('name')
         contacts = dict(list(run.contacts.groupby('object', sort=False)))

@@ -150,6 +150,13 @@ class Run:
             raise RunError('%s: has a row of frame %d; allowed: 0 to %d, those of frames.csv' % (
                 os.path.join(self.folder, name), wrong.iloc[0], len(self.frames) - 1))
 
+    def parameter(self, name, default):
+        """A number of the summary's parameters, which has those that are not the default."""
+        try:
+            return float(self.summary['parameters'].get(name, default))
+        except (TypeError, ValueError):
+            raise RunError("%s: '%s' is not a number%s" % (os.path.join(self.folder, 'summary.json'), name, ALLOWED)) from None
+
     @property
     def phalanges(self):
         """Phalanges of the tracked hands."""

@@ -31,6 +31,8 @@ SUMMARY = {'input': '', 'scene': 'cube', 'frames': 1, 'simulated_seconds': 0.5, 
            'version': '0', 'rejected': {}, 'parameters': {}, 'not_known': [], 'state_hash': '0'}
 URDF = '''<?xml version="1.0"?>
 <robot name="pinch"><link name="world"/>%s</robot>'''
+CEILING = '''<link name="ceiling"><collision><geometry><box size="1 1 0.02"/></geometry></collision></link>
+<joint name="world_to_ceiling" type="fixed"><parent link="world"/><child link="ceiling"/><origin xyz="0 0 %g"/></joint>'''
 BODY = '''<link name="%(name)s"><inertial><mass value="%(mass)g"/><inertia ixx="%(inertia)g" ixy="0" ixz="0" iyy="%(inertia)g" iyz="0"
 izz="%(inertia)g"/></inertial><collision><geometry>%(shape)s</geometry></collision></link>
 <joint name="world_to_%(name)s" type="floating"><parent link="world"/><child link="%(name)s"/><origin xyz="0 %(y)g 0"/></joint>'''
@@ -62,7 +64,9 @@ class Attempt:
     friction = 0.8
     overlap = 0.002  # of each finger [m]; a normal force of 2000 N/m times that
     rise = 0.3  # that the cube is carried up within RISE_TIME [m]
-    opens_at = vanishes_at = NEVER  # s
+    opens_at = jumps_at = NEVER  # s; the jump is by 0.3 m
+    unseen = missing = (NEVER, NEVER)  # s; from when to when frames have no hand, and there are no frames
+    ceiling = bound = 9.0  # m; height of a plate, upper end of the scene's bounds
     adjacent = False  # faces side by side
     ball_speed = 0.0  # of 1 kg, which meets the cube after half a second, along y
     until = 1.8  # s
@@ -82,7 +86,7 @@ class Attempt:
 
     def offset(self, time):
         pushed = 0.3 * smooth(time - 0.2, 1.2) if self.adjacent else 0.0  # the cube before it [m]
-        return (-pushed, -pushed, self.rise * smooth(time - MOVES, RISE_TIME))
+        return (-pushed, -pushed - 0.3 * (time >= self.jumps_at), self.rise * smooth(time - MOVES, RISE_TIME))
 
     def replay(self, folder, *arguments):
         """Writes scene and bag, replays them, and gives the folder of the tables."""
@@ -107,10 +111,10 @@ class Attempt:
             bodies += BODY % {'name': 'ball', 'mass': 1.0, 'inertia': 0.4 * 0.02 ** 2, 'y': -0.5 * self.ball_speed,
                               'shape': '<sphere radius="0.02"/>'}
         with open(path, 'w') as file:
-            file.write(URDF % bodies)
+            file.write(URDF % (bodies + CEILING % self.ceiling))
         with open(path[:-len('urdf')] + 'yaml', 'w') as file:
-            file.write('bounds: {min: [-9, -9, -9], max: [9, 9, 9]}\nmaterials:\n  object: {static_friction: %r, '
-                       'dynamic_friction: %r, stiffness: %g}\n' % (self.friction, 0.75 * self.friction, STIFFNESS))
+            file.write('bounds: {min: [-9, -9, -9], max: [9, 9, %g]}\nmaterials:\n  object: {static_friction: %r, '
+                       'dynamic_friction: %r, stiffness: %g}\n' % (self.bound, self.friction, 0.75 * self.friction, STIFFNESS))
 
     def _write_bag(self, path):
         import genpy
@@ -120,10 +124,12 @@ class Attempt:
         with rosbag.Bag(path, 'w') as bag:
             for i in range(int(self.until * RATE) + 1):
                 time = i / RATE
+                if self.missing[0] <= time < self.missing[1]:
+                    continue
                 stamp = genpy.Time(*divmod(int(round(1e9 * time)) + 1000000000, 1000000000))
                 frame = HandFrame()
                 frame.header.stamp, frame.header.frame_id = stamp, 'world'
-                if time < self.vanishes_at:
+                if not self.unseen[0] <= time < self.unseen[1]:
                     offset = self.offset(time)
                     hand = Hand(id=1, side=Hand.RIGHT, confidence=1.0)
                     hand.palm = Pose(Point(*(a + b for a, b in zip((0.0, 0.0, -0.1), offset))), Quaternion(w=1.0))

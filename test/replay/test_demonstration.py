@@ -48,6 +48,17 @@ class TablesTest(unittest.TestCase):
         numpy.testing.assert_allclose(demonstration.objects['cube'].wrench, [[0, 3, 2, 0.2, 0, 0.6]], atol=1e-15)
         self.assertFalse(demonstration.objects['ball'].wrench.any())
 
+    def test_forces_are_means_since_the_row_before_with_impulses(self):
+        demonstration = self.demonstration(
+            frames=[{'frame': i, 'stamp': 10000000 * i} for i in range(5)],
+            objects=[{'name': 'cube', 'qw': 1, 'frame': i} for i in range(5)],
+            contacts=[{'object': 'cube', 'x': 0.1, 'fy': 2, 'frame': 2}, {'object': 'cube', 'x': 0.1, 'jy': 0.03, 'frame': 3}])
+        numpy.testing.assert_allclose(demonstration.objects['cube'].wrench[:, 1], [0, 0, 2, 3, 0], atol=1e-12)
+        for rate, forces in ((50.0, [0, 1, 1.5]), (200.0, [0, 0, 0, 2, 2, 3, 3, 0, 0]), (40.0, [0, 1.4])):
+            wrench = demonstration.at_rate(rate).objects['cube'].wrench
+            numpy.testing.assert_allclose(wrench[:, 1], forces, atol=1e-12)
+            numpy.testing.assert_allclose(wrench[:, 5], 0.1 * wrench[:, 1], atol=1e-12)
+
     def test_an_event_is_told_at_the_first_time_after_it_and_cells_of_what_is_not_there_are_empty(self):
         demonstration = self.demonstration(
             frames=[{'frame': i, 'stamp': 9000000 * i} for i in range(4)],
@@ -111,6 +122,17 @@ class ReplayTest(unittest.TestCase):
             nearest = int(numpy.argmin(numpy.abs(own.stamps - stamp)))
             apart = numpy.linalg.norm(pose[:3] - own.objects['object'].pose[nearest, :3])
             self.assertLessEqual(apart, 1e-9 * abs(own.stamps[nearest] - stamp) + 1e-6)  # no faster than 1 m/s
+
+    def test_forces_give_the_object_its_momentum_at_any_rate(self):
+        run = Run(self.output)
+        self.assertTrue((run.contacts[['jx', 'jy', 'jz']] != 0.0).any(axis=None))
+        own = demonstration_of(run)
+        end = run.objects.iloc[-1]
+        momentum = run.bodies['mass'].iloc[0] * end[['vx', 'vy', 'vz']].to_numpy(float)
+        for rate in (0.0, 7.0, 30.0, 1000.0):
+            rows = own.at_rate(rate) if rate else own
+            given = (rows.objects['object'].wrench[1:, :3] * numpy.diff(rows.stamps)[:, None] / 1e9).sum(axis=0)
+            numpy.testing.assert_allclose(given, momentum, atol=1e-3 * numpy.linalg.norm(momentum))
 
     def test_table_and_bag_hold_what_carries_the_object(self):
         import rosbag

@@ -74,12 +74,33 @@ class ExplainTest(Folders):
 
     def test_each_attempt_fails_for_its_own_reason(self):
         for cause, changes in (('too_little_friction', SLIPPERY), ('too_little_force', WEAK),
-                               ('wrong_faces', {'adjacent': True, 'rise': 0.0}), ('tracking_lost', {'vanishes_at': 0.8}),
-                               ('hand_opened', OPENING), ('impact', {'overlap': 0.0005, 'rise': 0.0, 'ball_speed': 2.0})):
+                               ('wrong_faces', {'adjacent': True, 'rise': 0.0}), ('tracking_lost', {'unseen': (0.8, 2.0)}),
+                               ('tracking_lost', {'missing': (0.8, 1.3)}), ('out_of_bounds', {'bound': 0.1}),
+                               ('hand_jumped', {'jumps_at': 1.0}), ('blocked', {'ceiling': 0.1}), ('hand_opened', OPENING),
+                               ('impact', {'overlap': 0.0005, 'rise': 0.0, 'ball_speed': 2.0})):
             with self.subTest(cause=cause):
                 loss = self.loss(**changes)
                 self.assertEqual(loss.cause, cause, loss.text)
                 self.assertEqual(loss.by, 'ball' if cause == 'impact' else '')
+
+    def test_what_the_hold_survived_is_no_cause(self):
+        """The hand opens soon after the tracker did not see it for a moment, or after a ball hit the cube."""
+        for what in ({'unseen': (0.6, 0.63), 'rise': 0.0}, {'ball_speed': 0.5, 'rise': 0.0}):
+            self.assertEqual(self.story(**what).losses, [])
+            for wait in (0.1, 0.3):
+                loss = self.loss(opens_at=0.63 + wait, **what)
+                self.assertEqual(loss.cause, 'hand_opened', loss.text)
+
+    def test_a_hand_that_puts_down_opens_also_if_its_fingers_slid_before(self):
+        loss = self.loss(ceiling=0.1, rise=0.085, opens_at=1.2)
+        self.assertEqual(loss.cause, 'hand_opened', loss.text)
+        self.assertLess(float(re.search(r'from ([0-9.]+) s[.,]', loss.text.split('slid before')[1]).group(1)), 1.15)
+
+    def test_an_obstacle_holds_back_with_what_the_hand_gives(self):
+        """Friction of two fingers that slide, and no assist."""
+        loss = self.loss(ceiling=0.1)
+        force = float(re.search(r'held it back with ([0-9.]+) N', loss.text).group(1))
+        self.assertAlmostEqual(force, 0.75 * loss.friction * 2.0 * STIFFNESS * Attempt.overlap, delta=0.2 * force)
 
     def test_the_friction_that_would_have_held_holds(self):
         loss = self.loss(**SLIPPERY)

@@ -137,6 +137,11 @@ class DoctorTest(unittest.TestCase):
         self.assertIn("'nowhere'", wrong["mount"])
         self.assertIn("no transform", wrong["hands"])
 
+    def test_a_mirrored_hand(self):
+        for points, topic in (([(-x, y, z) for x, y, z in self.hand], TOPIC), (self.hand, TOPIC.replace("right", "left"))):
+            with Sender(points, topic=topic):
+                self.assert_wrong("hands", "bend to its back", "swap")
+
     def test_no_hand_in_view(self):
         with Sender([]):
             self.assert_wrong("hands", "none is seen")
