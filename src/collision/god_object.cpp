@@ -130,7 +130,7 @@ void place(const Indentation& indentation, double s, const Contact* memory, Cont
   contact.axis_parameter = s;
   if (!pressed) {
     contact.friction = Friction::sticking;
-    contact.twist = 0.0;
+    contact.twist = contact.engaged = 0.0;
   }
   const Capsule& capsule = indentation.pair.in_world;
   contact.point = indentation.pair.moving.to_world(contact.god_object);

@@ -38,10 +38,23 @@ double look_ahead(double step, double depth, bool damping) {
   return depth <= 0.0 ? step : mrhi::look_ahead(step, damping);
 }
 
-/// p(d) / d of a pad of that depth D (see Spring::compress).
-double shear_ratio(double depth, double pad) {
-  if (pad <= 0.0) return 1.0;
-  return depth > pad ? 1.0 - 0.5 * pad / depth : 0.5 * std::max(depth, 0.0) / pad;
+/// Smallest part of the pad's stiffness that shear has: at none the anchor would have no place.
+constexpr double kLeastEngaged = 0.02;
+
+/// Part of its final stiffness that the pad has at its depth; 0 without a pad.
+double engaged(const Contact& contact, double pad) {
+  return pad > 0.0 ? std::clamp(contact.pressed() / pad, kLeastEngaged, 1.0) : 0.0;
+}
+
+/// Stretch of the anchor that keeps its force as the stiffness changes, over its stretch.
+double kept_stretch(const Contact& contact, double now) {
+  return now > 0.0 ? contact.engaged / now : 1.0;
+}
+
+/// From the anchor to the phalanx along the surface, with p moved back to the surface along its path [m].
+Vector3 tangential_reach(const Contact& contact) {
+  const Vector3 reach = contact.hand_point - contact.point + contact.lever;
+  return reach - contact.normal.dot(reach) * contact.normal;
 }
 
 double friction_of(const Material& material, Friction friction) {
@@ -86,7 +99,7 @@ void follow(const ContactStep& step, const SpringContact& solved, Contact& conta
   const Material& material = step.scene.bodies[contact.key.body].material;
   const Vector3 slid = slide(solved, contact.grip * friction_of(material, contact.friction), step.step);
   const Pose& pose = step.bodies[contact.key.body].pose;
-  contact.god_object = pose.to_local(contact.point + slid - contact.lever);
+  contact.god_object = pose.to_local(pose * contact.god_object + slid - contact.lever);
 }
 
 void follow(const ContactStep& step, const SpringContact& solved, BodyContact& contact) {
@@ -141,11 +154,10 @@ void make_spring(const ContactStep& step, const Contact& contact, SpringContact&
   const ContactConfiguration& configuration = step.configuration;
   const Body& body = step.scene.bodies[contact.key.body];
   const Triple n = triple(contact.normal), point = triple(contact.point);
-  const Triple reach = triple(contact.hand_point) - point + triple(contact.lever);
+  const double now = engaged(contact, step.configuration.hand.pad);
   Spring& spring = result.spring;
   spring.normal = n;
-  // Eqs. 16 to 18: the component of p - c along the surface, with p moved back to the surface along its path.
-  spring.stretch = reach - n.dot(reach) * n;
+  spring.stretch = triple(kept_stretch(contact, now) * tangential_reach(contact));  // Eqs. 16 to 18
   spring.depth = contact.pressed();
   spring.twist = contact.twist;
   spring.ahead = look_ahead(step.step, spring.depth, configuration.damping);
@@ -154,12 +166,12 @@ void make_spring(const ContactStep& step, const Contact& contact, SpringContact&
   spring.pad = hand.pad;
   spring.half_over_pad = hand.pad > 0.0 ? 0.5 / hand.pad : 0.0;
   spring.stiffness = body.material.stiffness * contact.share;
-  spring.shear = spring.stiffness * shear_ratio(spring.depth, hand.pad);
+  spring.shear = hand.pad > 0.0 ? spring.stiffness * now : spring.stiffness;
   // Depth of a spring at full stiffness [m].
   spring.yields = contact.strength / std::max(spring.stiffness, 1e-300);
   spring.bond = 0.0;
   // Springs k at a lever arm l: a rotation by 1 rad stretches them by l, and they apply k l at that arm.
-  spring.twist_stiffness = configuration.torsion ? spring.shear * (kTwistLever * kTwistLever) : 0.0;
+  spring.twist_stiffness = configuration.torsion ? spring.stiffness * (kTwistLever * kTwistLever) : 0.0;
   spring.friction = contact.grip * friction_of(body.material, contact.friction);
   spring.patch_friction = kPatchTorque * spring.friction * contact.patch;
   result.arm = point - triple(step.bodies[contact.key.body].pose.position);
@@ -193,6 +205,12 @@ void make_spring(const ContactStep& step, const BodyContact& contact, SpringCont
 }
 
 void settle(const ContactStep& step, const SpringContact& solved, Contact& contact) {
+  const double now = engaged(contact, solved.spring.pad);
+  if (now != contact.engaged) {
+    const Vector3 moved = (1.0 - kept_stretch(contact, now)) * tangential_reach(contact);
+    contact.god_object = step.bodies[contact.key.body].pose.to_local(contact.point + moved);
+    contact.engaged = now;
+  }
   contact.twist = kept_twist(solved, step.step);
   contact.torque = solved.response.torque;
   settle_touch(step, solved, contact);

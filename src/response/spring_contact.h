@@ -107,9 +107,10 @@ inline void Spring::compress(double deep, double& pressed, double& steepness) co
 //     F  = -N n + k_s q+ min(1, L / k_s|q+|)  L = mu N + bond            Eqs. 18 to 20, Coulomb's disc
 //     T  = clamp(k_t (theta + tau spin), -L_t, L_t)                      soft finger: L_t = 2/3 mu a N
 //
-// k_s is k p(d) / d of the pad at the start of the step, so shear and pressure grow together (Mindlin 1949):
-// a finger that presses a slope of the angle a has F / N = tan a from the first touch on. With k it would
-// slip at first, on any slope.
+// k_s is the pad's slope k p' at the start of the step, and the anchor moves so that F stays as k_s changes:
+// dF = k_s dq, as dN = k p' dd. So shear and pressure grow and fall together (Mindlin 1949): a finger that
+// presses a slope of the angle a has F / N = tan a from the first touch on. With k it would slip at first, on
+// any slope.
 //
 // F and T act on body 2. While L and L_t are held, they are the gradient by u and spin of a convex function,
 // potential(). With L a function of N no such function exists, so the limits are those of the last iterate.

@@ -273,8 +273,8 @@ class Parts {
   }
   void one(ContactMemory& part) {
     auto& [key, friction, struck, ignored, god_object, entry_normal, touched_from, axis_parameter, at_edge,
-           depth, twist, compliance, force] = part;
-    all(key, god_object, entry_normal, touched_from, axis_parameter, depth, twist);
+           depth, twist, engaged, compliance, force] = part;
+    all(key, god_object, entry_normal, touched_from, axis_parameter, depth, twist, engaged);
     one_of(friction, Friction::slipping);
     all(struck, compliance, ignored);
     aside(at_edge, force);

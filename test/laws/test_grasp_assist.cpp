@@ -395,6 +395,25 @@ TEST(GraspAssist, bears_nothing_that_contact_holds) {
   EXPECT_TRUE(taken);
 }
 
+// A hand at rest, closed round a cube off its middle: thumb and index hold it, so assist has nothing to add.
+// In place of 23 N that opposed the nearer finger, what is left is a tenth.
+TEST(GraspAssist, a_hand_at_rest_presses_what_it_holds_off_its_middle_and_assist_does_not_oppose_it) {
+  Configuration configuration;  // as shipped
+  configuration.gravity = Vector3::Zero();
+  Simulation simulation(testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1)),
+                        configuration);
+  double force = 0.0;
+  testing::play(
+      simulation, 0.0, 2.0, 60.0, [&](double t) { return reaching(testing::smooth(t, 0.3), 0.004, 0.012); },
+      [&](const Simulation& s) {
+        force = 0.0;
+        for (const Grip& grip : s.state().grips)
+          force = std::max(force, grip.active ? grip.force.norm() : 0.0);
+      });
+  EXPECT_LT(simulation.state().bodies[0].pose.position.norm(), 0.02) << "held";
+  EXPECT_LT(force, 2.0);
+}
+
 // Every step, the forces and impacts of the contacts, and grasp assist's force beside them, are what changes
 // the body's momentum.
 TEST(GraspAssist, its_force_and_the_contacts_are_all_that_acts_on_the_body) {

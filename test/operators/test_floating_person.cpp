@@ -79,7 +79,7 @@ TEST(FloatingPerson, veterans_open_the_hatch_with_both_hands_free_and_take_longe
     ++completed, times += row.measures.completion_time;
     EXPECT_GE(row.measures.touches, 4) << "two latches, the handle, a rail or a second try";
   }
-  EXPECT_GE(completed, kPersons - 1);
+  EXPECT_GE(completed, kPersons - 2) << "26 of 30 veterans do: scripts/figures --page afloat";
   EXPECT_GT(times / completed, 25.0) << "with a hand on a rail it takes 22 s";
 }
 

@@ -48,7 +48,7 @@ TEST_P(GraspingMotionOnItsScene, holds_the_object_carries_it_and_lets_it_go_gent
   }
 }
 
-// Released at 5 mm/s: pulps give back what they were pressed by over 2 mm.
+// Released at 5 to 7 mm/s: pulps give back what they were pressed by over 2 mm.
 // `implicit`: what it may shift at 1 g is the springs' sag, m g / sum of k = 0.05 mm and more, which turns
 // with the hand. `seed`: a grip of 0.6 N without friction that damps.
 constexpr auto kImplicit = ContactModelKind::implicit, kSeed = ContactModelKind::seed;
@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(All, GraspingMotionOnItsScene,
                                            Held{"grasp_ball", kImplicit, 0.0, 1e-5, 0.05 * kDegrees, 0.006},
                                            Held{"catch_ball", kImplicit, 0.0, 1e-5, 0.05 * kDegrees, 0.006},
                                            Held{"pinch_long", kImplicit, 0.0, 1e-5, 0.05 * kDegrees, 0.006},
-                                           Held{"lift_flat", kImplicit, 0.0, 1e-5, 0.05 * kDegrees, 0.006},
+                                           Held{"lift_flat", kImplicit, 0.0, 1e-5, 0.05 * kDegrees, 0.0075},
                                            Held{"grasp_cube", kImplicit, kGravity, 1e-4, 0.1 * kDegrees, 0.0},
                                            Held{"grasp_ball", kImplicit, kGravity, 1e-4, 0.1 * kDegrees, 0.0},
                                            Held{"catch_ball", kImplicit, kGravity, 1e-4, 0.1 * kDegrees, 0.0},

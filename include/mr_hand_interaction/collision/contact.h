@@ -45,6 +45,7 @@ struct ContactMemory {
   double depth = 0.0;                       ///< n.(c - p): > 0 penetrates [m]
   /// Elastic rotation of the phalanx about n relative to the object since first touch [rad].
   double twist = 0.0;
+  double engaged = 0.0;             ///< part of the pad's final stiffness in the last step, 0 to 1
   double compliance = 0.0;          ///< depth without force, of a finger that closes on the body [m]
   Vector3 force = Vector3::Zero();  ///< of the last step [N]
 
