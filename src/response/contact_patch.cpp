@@ -94,9 +94,10 @@ PatchPoint make_point(double step, const SpringContact& row, const Mobility6& mo
   const double stiffness = step * spring.stiffness, impulse = stiffness * point.ahead;
   point.compliance = 1.0 / impulse;
   point.soft_stiffness = stiffness / (1.0 + impulse * point.normal_mobility);
-  const double shear = step * spring.shear, give = 1.0 / (1.0 + shear * point.ahead * tangential_mobility);
+  const double shear = step * spring.shear, drag = shear * point.ahead;
+  const double give = 1.0 / (1.0 + drag * tangential_mobility);
   point.kept = 1.0 - give;
-  point.damping = give * shear * point.ahead;
+  point.damping = give * drag;
   point.stretch_impulse = (give * shear) * (patch.axes * vector(spring.stretch));
   return point;
 }
