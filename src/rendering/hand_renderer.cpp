@@ -21,6 +21,23 @@ double margin(const HandOffset& offset) {
   return offset.zero() ? kLookAhead : offset.shift.norm() + kPushMargin;
 }
 
+/// Compares bits: a hand placed again from the same numbers is the same.
+bool same_place(const Hand& a, const Hand& b) {
+  const auto same = [](const Capsule& x, const Capsule& y) {
+    return x.radius == y.radius && x.start == y.start && x.end == y.end;
+  };
+  return a.palm.position == b.palm.position && a.wrist == b.wrist &&
+         a.palm.orientation.coeffs() == b.palm.orientation.coeffs() &&
+         std::equal(a.capsules.begin(), a.capsules.end(), b.capsules.begin(), same);
+}
+
+bool same_offset(const HandOffset& a, const HandOffset& b) {
+  const auto same = [](const FingerOffset& x, const FingerOffset& y) { return (x == y).all(); };
+  return a.shift == b.shift && a.lag.whole.coeffs() == b.lag.whole.coeffs() &&
+         a.lag.frame.coeffs() == b.lag.frame.coeffs() &&
+         std::equal(a.fingers.begin(), a.fingers.end(), b.fingers.begin(), same);
+}
+
 /// The search for axes of the palm ends when joint limits displace phalanges by less than this [m].
 constexpr double kMaxLimitDisplacement = 0.0005;
 /// First and last turn of that search [rad].
@@ -125,6 +142,7 @@ void HandRenderer::render(HandFrameView& view, HandOffset& offset, RenderedHand&
   if (offset_.zero()) rendered.hand = view.track.current;
   offset_.stamp = view.stamp;
   offset = offset_;
+  if (!offset.zero()) shown_[view.slot] = {view.track.current, rendered.hand, offset};
 }
 
 /// Places the hand outside all bodies except those that it is shown in. `near`: the finder has found bodies.
@@ -183,13 +201,22 @@ void HandRenderer::look_back() {
   if (last_->zero()) finder_.begin(*view_, kPushMargin);
   view_->moved = kUnknownDisplacement;
   if (view_->track.appeared) return;
-  before_ = view_->track.previous;
-  chain_before_.begin(view_->track.previous, last_->lag);
-  chain_before_.place(*last_, before_);
+  const Shown& known = shown_[view_->slot];
+  if (same_offset(known.offset, *last_) && same_place(known.tracked, view_->track.previous)) {
+    before_ = known.hand;
+  } else {
+    place_before();
+  }
   view_->shown_before = &before_;
   tracked_displacement_ = farthest_joint(view_->track.previous, view_->track.current);
   elapsed_ = to_seconds(view_->stamp - last_->stamp);
   view_->moved = tracked_displacement_ + finder_.fastest_body() * elapsed_;
+}
+
+void HandRenderer::place_before() {
+  before_ = view_->track.previous;
+  chain_before_.begin(view_->track.previous, last_->lag);
+  chain_before_.place(*last_, before_);
 }
 
 /// True once the tracked hand has been clear of all bodies for kMaxTimeBehind and the rendered hand has not
@@ -251,6 +278,7 @@ Quaternion HandRenderer::frame_staying(const Quaternion& whole) const {
 /// chosen so that the fingers can stay as well. Compass search: turns about each world axis either way while
 /// that improves, then half the turn. The objective has kinks, so no derivative is used.
 PalmLag HandRenderer::lag_staying() {
+  place_before();
   PalmLag lag;
   lag.whole = (axes_by_bones(before_) * axes_by_bones(view_->track.current).conjugate()).normalized();
   double held = limit_displacement(lag);

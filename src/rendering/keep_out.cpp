@@ -300,6 +300,7 @@ double HandRenderer::push_distance() const {
 /// The offset that leaves the hand where it was shown: joints keep their directions within their present
 /// limits, and the shift cancels the palm's displacement.
 HandOffset HandRenderer::staying(const PalmLag& lag) {
+  place_before();
   HandOffset stay;
   stay.lag = lag;
   stay.shift = before_.palm.position - view_->track.current.palm.position;

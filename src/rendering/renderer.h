@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "../collision/contact_finder.h"
@@ -217,6 +218,7 @@ class HandRenderer {
   void keep_outside(bool near);
   bool show_in(bool fixtures) const;
   void look_back();
+  void place_before();
   // `reference` is the offset to stay near to; `swing` bounds a fingertip's turn in the frame [m].
   void push_out(double min_gap);
   void keep_pace(const HandOffset& reference);
@@ -234,8 +236,15 @@ class HandRenderer {
   double displacement(const HandOffset& from, const HandOffset& to);
   bool left_behind();
 
+  /// A hand as it was shown, and what it was placed from.
+  struct Shown {
+    Hand tracked, hand;
+    HandOffset offset;
+  };
+
   ClearanceFinder finder_;
   HandChain chain_, chain_before_;  // the latter as of the previous frame
+  std::array<Shown, kMaxHands> shown_;
   std::vector<Clearance> clearances_;
 
   // Of the frame. `offset_` is the unknown, `placed_` the hand with it.
