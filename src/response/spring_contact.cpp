@@ -58,7 +58,7 @@ Vector3 tangential_reach(const Contact& contact) {
 }
 
 double friction_of(const Material& material, Friction friction) {
-  return friction == Friction::sticking ? material.static_friction : material.dynamic_friction;
+  return friction == Friction::slipping ? material.dynamic_friction : material.static_friction;
 }
 
 /// Distance by which the anchor on body 2 slides along the surface: the part of the motion that spring and
@@ -85,31 +85,13 @@ Vector3 slide(const SpringContact& solved, double dynamic_friction, double step)
   return stretch + followed * (drawn - stretch) - kept;
 }
 
-/// Sliding speed up to which friction between objects stays static [m/s].
+/// Sliding speed up to which friction stays static [m/s].
 ///
 /// Friction falls from mu to phi when surfaces slide, not when the force of one point reaches its limit. The
-/// corners of a block on a ramp carry unequal loads and slip one after the other before the block slides. A
-/// momentary dip of the load after a landing starts no slide. A slide this slow stops within 10 um. In long
-/// steps the limit is the speed gained by falling for a step.
+/// corners of a block on a ramp, or the phalanges below it, carry unequal loads and slip one after the other
+/// before the block slides. A momentary dip of the load after a landing starts no slide. A slide this slow
+/// stops within 10 um. In long steps the limit is the speed gained by falling for a step.
 constexpr double kStaticSpeed = 0.01;
-
-/// Moves the anchor on the body if the contact slips. Friction between bodies stays static if they slide
-/// slowly under static friction.
-void follow(const ContactStep& step, const SpringContact& solved, Contact& contact) {
-  const Material& material = step.scene.bodies[contact.key.body].material;
-  const Vector3 slid = slide(solved, contact.grip * friction_of(material, contact.friction), step.step);
-  const Pose& pose = step.bodies[contact.key.body].pose;
-  contact.god_object = pose.to_local(pose * contact.god_object + slid - contact.lever);
-}
-
-void follow(const ContactStep& step, const SpringContact& solved, BodyContact& contact) {
-  const double slid_statically = slide(solved, contact.material.static_friction, step.step).norm();
-  const double speed = std::max(kStaticSpeed, step.step * step.gravity.norm());
-  contact.friction = slid_statically > speed * step.step ? Friction::slipping : Friction::sticking;
-  const Pose& pose = step.bodies[contact.key.b].pose;
-  const Vector3 slid = slide(solved, friction_of(contact.material, contact.friction), step.step);
-  contact.anchor_b = pose.to_local(pose * contact.anchor_b + slid);
-}
 
 /// Elastic part of the twist after the step. As in slide(): theta(h) = theta + (h / e) (T / k_t - theta),
 /// which is theta + h spin while T is within its limit. A contact without torsional stiffness keeps its
@@ -120,24 +102,26 @@ double kept_twist(const SpringContact& solved, double step) {
   const double followed = step / spring.ahead;
   return spring.twist + followed * (solved.response.torque / spring.twist_stiffness - spring.twist);
 }
-/// Writes force and friction state, and moves the anchor on the body.
+
+/// Writes force and friction state. Returns by how much the anchor on the body slides [m].
 ///
-///     sticks:     |k q+| <= mu N            from sticking
-///                 |k q+| <= 0.9 phi N       from slipping
+///     sticks:     |k q+| <= L
+///     creeps:     |k q+| > L, and it would slide under mu by no more than the static speed
 ///
-/// The step just solved used the limit of the previous friction state: a contact that breaks away in this
-/// step had mu N, and has phi N in the next one. An open contact, N = 0, does not slide.
+/// The step just solved used the limit L of the previous friction state, mu N or phi N. The new state sets
+/// that of the next step. An open contact, N = 0, does not slide.
 template <typename Touch>
-void settle_touch(const ContactStep& step, const SpringContact& solved, Touch& touch) {
+Vector3 settle_touch(const ContactStep& step, const SpringContact& solved, const Material& material,
+                     Touch& touch, double grip = 1.0) {
+  const double limit = solved.spring.slip_limit;
   touch.force = vector(solved.response.force);
-  // Eqs. 19, 20 with mu while sticking and phi while sliding, by the normal force at the end of the step. A
-  // slipping contact sticks again only well within the limit; otherwise it would change state in every step.
-  const double limit =
-      (touch.friction == Friction::sticking ? 1.0 : kRestickRatio) * solved.spring.slip_limit;
-  const bool sticks = solved.response.trial_squared <= limit * limit;
-  touch.friction = sticks ? Friction::sticking : Friction::slipping;
-  if (sticks || solved.response.normal_force <= 0.0) return;
-  follow(step, solved, touch);
+  touch.friction = solved.response.trial_squared <= limit * limit ? Friction::sticking : Friction::slipping;
+  if (touch.friction == Friction::sticking || solved.response.normal_force <= 0.0) return Vector3::Zero();
+  const double speed = std::max(kStaticSpeed, step.step * step.gravity.norm());
+  const Vector3 crept = slide(solved, grip * material.static_friction, step.step);
+  if (crept.norm() > speed * step.step) return slide(solved, grip * material.dynamic_friction, step.step);
+  touch.friction = Friction::creeping;
+  return crept;
 }
 
 }  // namespace
@@ -213,11 +197,18 @@ void settle(const ContactStep& step, const SpringContact& solved, Contact& conta
   }
   contact.twist = kept_twist(solved, step.step);
   contact.torque = solved.response.torque;
-  settle_touch(step, solved, contact);
+  const Material& material = step.scene.bodies[contact.key.body].material;
+  const Vector3 slid = settle_touch(step, solved, material, contact, contact.grip);
+  if (slid.isZero(0.0)) return;
+  const Pose& pose = step.bodies[contact.key.body].pose;
+  contact.god_object = pose.to_local(pose * contact.god_object + slid - contact.lever);
 }
 
 void settle(const ContactStep& step, const SpringContact& solved, BodyContact& contact) {
-  settle_touch(step, solved, contact);
+  const Vector3 slid = settle_touch(step, solved, contact.material, contact);
+  if (slid.isZero(0.0)) return;
+  const Pose& pose = step.bodies[contact.key.b].pose;
+  contact.anchor_b = pose.to_local(pose * contact.anchor_b + slid);
 }
 
 namespace {

@@ -45,7 +45,7 @@ void add_phalanges(int slot, const Scene& scene, const std::vector<Contact>& con
       impulse += contact->impulse;
       normals += contact->normal;
       depth = std::max(depth, contact->depth);
-      slips = slips || (contact->touching() && contact->friction == Friction::slipping);
+      slips = slips || (contact->touching() && contact->friction != Friction::sticking);
       felt = true;
     }
     if (!felt) continue;

@@ -16,8 +16,8 @@ const char* phase_name(ContactPhase phase) {
 
 FrictionUse friction_use(const Contact& contact, const Material& material) {
   const double normal = -contact.force.dot(contact.normal);
-  const bool sticks = contact.friction == Friction::sticking;
-  const double friction = sticks ? material.static_friction : material.dynamic_friction;
+  const bool slides = contact.friction == Friction::slipping;
+  const double friction = slides ? material.dynamic_friction : material.static_friction;
   return {normal, (contact.force + normal * contact.normal).norm(), friction * std::max(normal, 0.0)};
 }
 

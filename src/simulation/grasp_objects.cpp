@@ -58,7 +58,7 @@ TouchingSides GraspObjects::touching_sides(const Grip& grip, const Contacts& con
 
 bool GraspObjects::slips(const Grip& grip, const Contacts& contacts) const {
   return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
-    return contact.friction == Friction::slipping && contact.touching() &&
+    return contact.friction != Friction::sticking && contact.touching() &&
            is_in(grip, contact.key.hand, contact.key.body);
   });
 }

@@ -17,7 +17,7 @@ namespace mrhi {
 namespace {
 
 /// Format version. Changes whenever the order or meaning of the bytes does.
-constexpr std::uint64_t kFormat = 0x6d72686900000009ull;
+constexpr std::uint64_t kFormat = 0x6d7268690000000aull;
 
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +

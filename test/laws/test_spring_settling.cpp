@@ -82,11 +82,21 @@ TEST(Settling, what_sticks_keeps_all_of_its_stretch) {
   EXPECT_NEAR(implicit.stretch_left(), 0.9 * kStatic * kDepth, 1e-12);
 }
 
-TEST(Settling, what_slides_sticks_again_only_below_nine_tenths_of_what_sliding_gives) {
-  for (const double part : {0.85, 0.95}) {
+TEST(Settling, what_slides_sticks_again_where_sliding_would_give_more) {
+  for (const double part : {0.99, 1.01}) {
     Touch touch(part * kDynamic * kDepth, Friction::slipping);
     touch.settle_implicit();
-    EXPECT_EQ(touch.contact.friction, part < kRestickRatio ? Friction::sticking : Friction::slipping) << part;
+    EXPECT_EQ(touch.contact.friction == Friction::sticking, part < 1.0) << part;
+  }
+}
+
+// The slide is what lies beyond Coulomb's limit of static friction.
+TEST(Settling, friction_stays_static_up_to_a_sliding_speed_of_1_cm_a_second) {
+  for (const double speed : {0.009, 0.011}) {
+    Touch touch(kStatic * kDepth + speed * kStep);
+    touch.settle_implicit();
+    EXPECT_EQ(touch.contact.friction, speed < 0.01 ? Friction::creeping : Friction::slipping) << speed;
+    EXPECT_NEAR(touch.stretch_left(), (speed < 0.01 ? kStatic : kDynamic) * kDepth, 1e-12) << speed;
   }
 }
 

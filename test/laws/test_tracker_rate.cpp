@@ -47,7 +47,7 @@ Shaken shake(const Configuration& configuration, double rate, double amplitude) 
       double force = 0.0;
       for (const Contact& contact : simulation.state().contacts) {
         force += contact.force.dot(kDirection);
-        if (since > 0.0 && contact.touching() && contact.friction == Friction::slipping) result.slips = true;
+        if (since > 0.0 && contact.touching() && contact.friction != Friction::sticking) result.slips = true;
       }
       forces.push_back(force);
     }
@@ -154,16 +154,52 @@ double off_place(const HandStrength& hand, double normal_force, double rate, dou
   return (simulation.state().bodies[0].pose.position - before).norm();
 }
 
-/// Between steps of 1 ms the load rises, so 99 % is too much. At a depth of 2 mm a rigid finger presses with
-/// 4 N, a person's pad of 2 mm with half of it.
+/// Beyond the limit it creeps there and back as long as it is slower than 1 cm/s. At a depth of 2 mm a rigid
+/// finger presses with 4 N, a person's pad of 2 mm with half of it.
 TEST(TrackerRate, a_cube_between_two_fingers_loses_its_place_only_at_coulombs_limit) {
   for (const double rate : {60.0, 90.0, 120.0}) {
     for (const bool person : {false, true}) {
       const HandStrength hand = person ? HandStrength::of_a_person() : HandStrength{};
       const double force = person ? 2.0 : 4.0;
       EXPECT_LT(off_place(hand, force, rate, 0.97), 1e-6) << rate << " Hz";
-      EXPECT_GT(off_place(hand, force, rate, 0.99), 1e-4) << rate << " Hz";
+      EXPECT_GT(off_place(hand, force, rate, 1.2), 1e-2) << rate << " Hz";
     }
+  }
+}
+
+/// How far a box of 0.3 kg slides on four straight fingers at 1 g, which tilt within 1 s, to either side [m].
+double slid_on_open_hand(double angle, double rate) {
+  constexpr double kRadius = 0.008, kHalf = 0.015, kBone = 0.06;
+  Hand flat = testing::finger(Vector3(0.0, -0.033, -kRadius), Vector3(kBone, -0.033, -kRadius), kRadius);
+  for (int finger = 1; finger < kFingers; ++finger) {
+    for (int bone = 1; bone < 4; ++bone) {
+      const Vector3 from(kBone * (bone - 2), 0.022 * (finger - 2.5), -kRadius);
+      testing::add_finger(flat, capsule_index(finger, bone), from, from + kBone * Vector3::UnitX(), kRadius);
+    }
+  }
+  Configuration configuration = configuration_of(HandStrength::of_a_person(), FilterKind::none);
+  configuration.gravity = -9.81 * Vector3::UnitZ();
+  Body box = testing::stiff_box(Vector3(0.08, 0.08, 2.0 * kHalf), 0.3);
+  box.start.position = Vector3(0.0, 0.0, kHalf);
+  Simulation simulation(testing::scene_of(box), configuration);
+  Vector3 before = Vector3::Zero(), after = Vector3::Zero();
+  for (int frame = 0; frame / rate < 3.0; ++frame) {
+    const double t = frame / rate;
+    const Quaternion turn(Eigen::AngleAxisd(-angle * smooth(t - 1.0, 1.0), Vector3::UnitX()));
+    simulation.advance({testing::at(t), {testing::moved(flat, Pose{Vector3::Zero(), turn})}});
+    after = turn.conjugate() * simulation.state().bodies[0].pose.position;
+    if (t < 0.9) before = after;
+  }
+  return (after - before).head<2>().norm();
+}
+
+/// Phalanges below a box carry unequal loads: what slips first keeps static friction until the box slides.
+/// 1 mm: what the pads shear by, as measured 0.6.
+TEST(TrackerRate, a_box_on_an_open_hand_slides_off_only_where_it_is_tilted_beyond_coulombs_limit) {
+  const double limit = std::atan(Material().static_friction);
+  for (const double rate : {60.0, 120.0}) {
+    EXPECT_LT(slid_on_open_hand(0.97 * limit, rate), 1e-3) << rate << " Hz";
+    EXPECT_GT(slid_on_open_hand(1.05 * limit, rate), 1e-2) << rate << " Hz";
   }
 }
 

@@ -29,7 +29,9 @@ struct ContactKey {
 /// Eq. 8's three cases.
 enum class Approach : std::uint8_t { separating, resting, colliding };
 
-enum class Friction : std::uint8_t { sticking, slipping };
+/// State of a contact's friction. Creeping surfaces slip, but too slowly for friction to fall from static to
+/// dynamic.
+enum class Friction : std::uint8_t { sticking, creeping, slipping };
 
 /// Part of a contact that persists while the surfaces touch.
 struct ContactMemory {
