@@ -85,7 +85,8 @@ def schema_joints(joints):
     found = {'wrist': joints[0]}
     for i, finger in enumerate(FINGERS):
         chain = np.array(joints[1 + 4 * i:5 + 4 * i])
-        last = chain[3] - chain[2]
+        before = next((place for place in (chain[2], chain[1], chain[0], joints[0]) if np.isfinite(place).all()), chain[3])
+        last = chain[3] - before
         chain[3] = chain[3] - PULP * last / max(np.linalg.norm(last), 1e-9)
         found.update({'%s_j%d' % (finger, j + 1): place for j, place in enumerate(chain)})
     found['thumb_j0'] = found['thumb_j1']

@@ -37,18 +37,18 @@ def paired(a, b):
 
 
 def counts_of_groups(a, b):
-    """Permutation test; the effect is the ratio of the means, with the interval of resampled participants."""
-    return _of_counts(a, b, permutation.groups, permutation.ratio_of_groups)
+    """Permutation test; the effect is the ratio of the means, or their difference where b has only zeros."""
+    return _of_counts(a, b, permutation.groups, permutation.effect_of_groups)
 
 
 def counts_of_pairs(a, b):
-    return _of_counts(a, b, permutation.pairs, permutation.ratio_of_pairs)
+    return _of_counts(a, b, permutation.pairs, permutation.effect_of_pairs)
 
 
-def _of_counts(a, b, test, ratio):
+def _of_counts(a, b, test, effect):
     a, b = np.asarray(a, float), np.asarray(b, float)
     p = test(a, b) if len(a) and len(b) else np.nan
-    return _of_means('permutation', a, b, np.nan, np.nan, p, 'ratio of means', *ratio(a, b))
+    return _of_means('permutation', a, b, np.nan, np.nan, p, *effect(a, b))
 
 
 def modelled(a, b, difference, logarithm):

@@ -149,15 +149,14 @@ def _share(drawn, observed, exact):
     return float(extreme / len(drawn) if exact else (extreme + 1) / (len(drawn) + 1))
 
 
-def ratio_of_groups(a, b):
-    """Mean of a over mean of b, and the 95 % interval that resampled participants give; nan where none can be."""
-    return _ratio(np.asarray(a, float), np.asarray(b, float), None)
+def effect_of_groups(a, b):
+    """Mean of a over mean of b, or less it where it is 0: name, value, and the 95 % interval that resampled participants give."""
+    return _effect(np.asarray(a, float), np.asarray(b, float), False)
 
 
-def ratio_of_pairs(a, b):
+def effect_of_pairs(a, b):
     """The same where a and b are of the same participants, who are resampled with both values."""
-    a, b = np.asarray(a, float), np.asarray(b, float)
-    return _ratio(a, b, len(a))
+    return _effect(np.asarray(a, float), np.asarray(b, float), True)
 
 
 def interval_of_mean(values):
@@ -168,27 +167,28 @@ def interval_of_mean(values):
     return tuple(float(limit) for limit in _percentiles(means))
 
 
-def _ratio(a, b, paired):
-    if not len(a) or not len(b) or b.sum() == 0:
-        return np.nan, np.nan, np.nan
+def _effect(a, b, paired):
+    if not len(a) or not len(b):
+        return 'ratio of means', np.nan, np.nan, np.nan
+    is_ratio = b.sum() != 0
+    name, of = ('ratio of means', np.divide) if is_ratio else ('difference', np.subtract)
     random = np.random.RandomState(SEED)
     means = [_resampled(random, a, b, paired) for _ in range(BOOTSTRAPPED // 100)]
-    of_a, of_b = (np.concatenate(part) for part in zip(*means))
     with np.errstate(divide='ignore', invalid='ignore'):
-        ratios = of_a / of_b
-    ratios = ratios[~np.isnan(ratios)]
-    low, high = _percentiles(ratios) if _finite_enough(ratios) else (np.nan, np.nan)
-    return float(a.mean() / b.mean()), float(low), float(high)
+        effects = of(*(np.concatenate(part) for part in zip(*means)))
+    effects = effects[~np.isnan(effects)]
+    low, high = _percentiles(effects) if _finite_enough(effects) else (np.nan, np.nan)
+    return name, float(of(a.mean(), b.mean())), float(low), float(high)
 
 
-def _finite_enough(ratios):
-    return len(ratios) and np.isfinite(ratios).mean() > 0.975
+def _finite_enough(effects):
+    return len(effects) and np.isfinite(effects).mean() > 0.975
 
 
-def _percentiles(ratios):
+def _percentiles(effects):
     """Of a sorted list, without a mean of neighbours, one of which may be infinite."""
-    ratios = np.sort(ratios)
-    return [ratios[int(round(share * (len(ratios) - 1)))] for share in (0.025, 0.975)]
+    effects = np.sort(effects)
+    return [effects[int(round(share * (len(effects) - 1)))] for share in (0.025, 0.975)]
 
 
 def _resampled(random, a, b, paired):

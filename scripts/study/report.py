@@ -145,10 +145,10 @@ def _findings(results, part):
 
 def _sentence(row):
     ratio = row.effect_name.startswith('ratio')
-    size = '%s times' % number(row.effect) if ratio else 'a difference of %s' % number(row.effect)
+    size = ('is %s times that' if ratio else 'differs by %s from that') % number(row.effect)
     limits = '' if np.isnan(row.low) else '95 %% interval %s to %s, ' % (number(row.low), number(row.high))
     under = ', under ' + plain(row.condition) if row.at == 'all objects' else ''
-    return '%s of %s is %s that of %s%s (%s%s after correction, n = %s).' % (
+    return '%s of %s %s of %s%s (%s%s after correction, n = %s).' % (
         OF[row.measure].label, plain(row.a), size, plain(row.b), under, limits, p_text(row.p_bonferroni),
         '%d' % row.n_a if row.at == 'conditions' else '%d and %d' % (row.n_a, row.n_b))
 

@@ -164,7 +164,8 @@ class MadeUp(unittest.TestCase):
         hands = [row for row in self.rows(name + '.csv') if row['is_left'] == '0']
         self.assertEqual(len(hands), len(placed))
         for i, row in enumerate(hands):
-            before, tip = (np.array([float(row['index_j%d_%s' % (j, axis)]) for axis in 'xyz']) for j in (3, 4))
+            known = next(name for name in ('index_j3', 'index_j2', 'index_j1', 'wrist') if row[name + '_x'])
+            before, tip = (np.array([float(row['%s_%s' % (name, axis)]) for axis in 'xyz']) for name in (known, 'index_j4'))
             to_tip = (tip - before) / np.linalg.norm(tip - before)
             x, y, z = tip + 0.008 * to_tip  # the skin, in the device's axes
             np.testing.assert_allclose([x, -z, y], self.touched[first + i], atol=5e-6)
@@ -411,13 +412,14 @@ class Layouts(MadeUp):
             writer.writerows([i / 30, *self.places[i], *self.turns[i].as_quat()] for i in range(FRAMES))
         write_obj(os.path.join(self.set, 'P1.obj'))
 
-    def test_a_table_of_openxr_joints_of_mediapipe_s_and_of_a_few_markers(self):
+    def test_a_table_of_openxr_joints_of_mediapipe_s_of_a_few_markers_and_of_tips_alone(self):
         openxr = {1 + 4 * f + b: '%s_%s' % (finger, bone) for f, finger in enumerate(('thumb', 'index', 'middle', 'ring', 'little'))
                   for b, bone in enumerate(('metacarpal', 'proximal', 'distal', 'tip') if f == 0 else ('proximal', 'intermediate', 'distal', 'tip'))}
         mediapipe = {1 + 4 * f + b: '%s_%s' % (finger, bone) for f, finger in enumerate(('thumb', 'index', 'middle', 'ring', 'pinky'))
                      for b, bone in enumerate(('cmc', 'mcp', 'ip', 'tip') if f == 0 else ('mcp', 'pip', 'dip', 'tip'))}
         markers = {j: mediapipe[j] for j in (4, 5, 6, 7, 8, 12)}
-        for names in ({0: 'wrist', **openxr}, {0: 'wrist', **mediapipe}, {0: 'wrist', **markers}):
+        tips = {j: mediapipe[j] for j in (4, 8, 12)}
+        for names in ({0: 'wrist', **openxr}, {0: 'wrist', **mediapipe}, {0: 'wrist', **markers}, {0: 'wrist', **tips}):
             self.write_table(names)
             self.check('table')
 

@@ -83,9 +83,6 @@ class LaunchFilesTest(unittest.TestCase):
             for node in chosen:
                 self.assertIn(("ROS_IP", "192.168.7.7"), node.env_args, "%s: %s" % (name, node.name))
 
-    def test_deprecated_arguments_are_accepted(self):
-        config_of("multi_machine.launch", "role:=view", "leave_out:=hand,ghost", "view_rate:=10")
-
     def test_roles_of_several_machines_are_open_to_them(self):
         with with_environment(ROS_IP=None, ROS_HOSTNAME=None):
             for role in ("bridge", "simulation", "view"):

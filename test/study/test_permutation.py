@@ -56,12 +56,13 @@ class Permutations(unittest.TestCase):
         for seed in range(100):
             random = np.random.RandomState(seed)
             rates = random.gamma(2.0, 1.0, 30)
-            _, low, high = permutation.ratio_of_pairs(random.poisson(2 * rates), random.poisson(rates))
+            _, _, low, high = permutation.effect_of_pairs(random.poisson(2 * rates), random.poisson(rates))
             held += low <= 2.0 <= high
         self.assertTrue(88 <= held <= 99, held)
 
-    def test_no_ratio_to_none(self):
-        self.assertTrue(np.isnan(permutation.ratio_of_groups([1, 2], [0, 0])).all())
+    def test_the_effect_beside_none_is_a_difference(self):
+        name, difference, low, high = permutation.effect_of_groups([1, 3], [0, 0])
+        self.assertEqual((name, difference, low, high), ('difference', 2.0, 1.0, 3.0))
 
 
 class Exact(unittest.TestCase):
