@@ -1,5 +1,5 @@
 // Jitter against lag of every filter and setting, over real recordings with and without added noise, and the
-// motion of a cube held by a noisy hand. See docs/pipeline.md.
+// motion of a cube held by a noisy hand; lag of a hand that sets off. See docs/pipeline.md.
 
 #include <fstream>
 #include <iostream>
@@ -9,6 +9,7 @@
 #include "mr_hand_interaction/replay/recording_csv.h"
 #include "scores.h"
 #include "settings.h"
+#include "start.h"
 #include "support/recordings.h"
 #include "text/files.h"
 
@@ -69,6 +70,21 @@ void write_rides(std::ostream& csv) {
   }
 }
 
+void write_starts(std::ostream& csv) {
+  csv << "filter,frames_per_s,noise_mm,lag_mm,rest_mm\n";
+  CsvRows row(csv);
+  for (const char* filter : {"none", "one_euro", "constant_velocity"}) {
+    FilterConfiguration configuration;
+    configuration.type.name = filter;
+    for (const double rate : {30.0, 60.0, 90.0, 120.0}) {
+      for (const double noise : {0.0003, 0.001, 0.0012, 0.0015, 0.002, 0.003, 0.005}) {
+        const Start start = start_of_a_reach(configuration, noise, rate);
+        (row << filter << rate << kMilli * noise << kMilli * start.lag << kMilli * start.rest).end_row();
+      }
+    }
+  }
+}
+
 /// Returns false if the file cannot be written.
 template <typename Write>
 bool write_file(const std::string& path, Write write) {
@@ -89,7 +105,8 @@ int run(const std::string& folder, std::vector<std::string> files) {
   }
   const bool written =
       write_file(folder + "/filters.csv", [&](std::ostream& csv) { write_recordings(files, csv); }) &&
-      write_file(folder + "/filters_held.csv", [](std::ostream& csv) { write_rides(csv); });
+      write_file(folder + "/filters_held.csv", [](std::ostream& csv) { write_rides(csv); }) &&
+      write_file(folder + "/filters_start.csv", [](std::ostream& csv) { write_starts(csv); });
   return written ? 0 : 1;
 }
 

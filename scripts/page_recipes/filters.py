@@ -1,4 +1,4 @@
-"""Filters: jitter, lag, and grasps held."""
+"""Filters: jitter, lag, lag of a hand that sets off, and grasps held."""
 import collections
 import re
 import tempfile
@@ -26,6 +26,7 @@ def filters():
         run('filters', '--output', folder)
         draw('filters', 'plot_filters.py', folder)
         recorded, held = rows_of_file(folder, 'filters.csv'), rows_of_file(folder, 'filters_held.csv')
+        started = rows_of_file(folder, 'filters_start.csv')
     lines = []
     for panel in dict.fromkeys((row['input'], row['frames_per_s']) for row in recorded):
         of_panel = {_filter_name(row): row for row in recorded if (row['input'], row['frames_per_s']) == panel}
@@ -42,8 +43,18 @@ def filters():
         'held': table(['', 'true slip [mm]', 'displacement [mm]', "cube's jitter [mm]", 'gain of a shake'], [
             [label] + ['%.3f' % float(of_held[name][key]) for key in ('true_slip_mm', 'displacement_mm', 'jitter_mm')]
             + ['%.2f' % float(of_held[name]['gain'])] for name, label in FILTERS.items()]),
+        'start': _start(started),
         'grasps': _grasps(grasps),
     }, {}
+
+
+def _start(rows):
+    cells = {(row['filter'], row['noise_mm'], row['frames_per_s']): row for row in rows}
+    rates = list(dict.fromkeys(row['frames_per_s'] for row in rows))
+    return table(['noise'] + ['%s, %s Hz' % (what, rate) for what in ('lag', 'rest') for rate in rates], [
+        ['%s mm' % noise] + ['%s (%s)' % tuple(form % float(cells[name, noise, rate][key]) for name in ('constant_velocity', 'one_euro'))
+                             for key, form in (('lag_mm', '%.1f'), ('rest_mm', '%.2f')) for rate in rates]
+        for noise in dict.fromkeys(row['noise_mm'] for row in rows)])
 
 
 def _grasps(rows):

@@ -172,7 +172,11 @@ CsvInput::CsvInput(const std::string& file, const Pose& device_in_world, double 
 std::optional<SourceFrame> CsvInput::next() {
   if (position_ == frames_.size()) return std::nullopt;
   TrackerFrame frame{"", frames_[position_++], {}, {}, false};
-  return input_.take(std::move(frame), [this](Nanoseconds) { return device_in_world_; });
+  const Nanoseconds stamp = frame.joints.stamp;
+  SourceFrame result = input_.take(std::move(frame), [this](Nanoseconds) { return device_in_world_; });
+  // A recording has no receiver's clock. The next frame takes its place: it confirms a gap, and not a stray.
+  if (position_ < frames_.size()) result.arrival = std::min(stamp, frames_[position_].stamp);
+  return result;
 }
 
 }  // namespace mrhi

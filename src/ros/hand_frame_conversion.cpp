@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "../tracking/hand_anatomy.h"
 #include "mr_hand_interaction/stamp_check.h"
 #include "mr_hand_interaction/tracking/joints.h"
 
@@ -42,6 +43,16 @@ Pose checked_palm(const mr_hand_interaction::Hand& message) {
   return palm;
 }
 
+/// A wrist at (0, 0, 0) far from the palm is not known: it is placed as in an adult's hand of that palm.
+Vector3 checked_wrist(const mr_hand_interaction::Hand& message, const Hand& hand) {
+  constexpr double kMaxToPalm = 0.2;  // of large hands too [m]
+  const Vector3 wrist = checked(message, "wrist", message.wrist);
+  if (!wrist.isZero(0.0) || hand.palm.position.norm() < kMaxToPalm) return wrist;
+  const double mirror = hand.side == Side::left ? -1.0 : 1.0;
+  return hand.palm *
+         (hand.palm_width / anatomy::kPalmWidth * Vector3(1.0, mirror, 1.0).cwiseProduct(anatomy::kWrist));
+}
+
 void add_phalanx(const mr_hand_interaction::Hand& message, const mr_hand_interaction::Phalanx& phalanx,
                  Hand& hand) {
   const std::string name =
@@ -64,7 +75,7 @@ Hand from_message(const mr_hand_interaction::Hand& message) {
   hand.pinch_strength = checked(message, "pinch_strength", message.pinch_strength, 1.0);
   hand.palm = checked_palm(message);
   hand.palm_width = checked(message, "palm_width", message.palm_width, 0.3);
-  hand.wrist = checked(message, "wrist", message.wrist);
+  hand.wrist = checked_wrist(message, hand);
   for (const auto& phalanx : message.phalanges) add_phalanx(message, phalanx, hand);
   hand.capsules[kPalm] = palm_capsule(hand.palm, hand.palm_width);
   return hand;

@@ -105,6 +105,7 @@ Simulation::~Simulation() = default;
 Rejection Simulation::begin(const HandFrame& frame, const std::optional<Nanoseconds>& expected) {
   Impl& s = *impl_;
   s.result.restarted = false;
+  const double hold_time = s.hold_time();  // by the interval before this frame
   const Rejection rejection = s.check_stamp(frame.stamp, expected);
   if (rejection != Rejection::none) return rejection;
   s.clear_result();
@@ -112,9 +113,8 @@ Rejection Simulation::begin(const HandFrame& frame, const std::optional<Nanoseco
     s.state.started = true;
     s.state.time = s.state.last_frame = frame.stamp;
   }
-  if (to_seconds(frame.stamp - s.state.last_frame) > s.configuration.tracking.hold_time)
-    s.pass_without_frames(frame.stamp);
-  s.lose_hands(frame.stamp);
+  if (to_seconds(frame.stamp - s.state.last_frame) > hold_time) s.pass_without_frames(frame.stamp, hold_time);
+  s.lose_hands(frame.stamp, hold_time);
   track_hands(frame, s.configuration, s.state.hands, s.result.events);
   s.lose_hands_that_are_not_finite(frame.stamp);
   s.state.last_frame = frame.stamp;
@@ -174,10 +174,10 @@ bool Simulation::advance_without_hands(Nanoseconds time) {
   Impl& s = *impl_;
   const SimulationState& state = s.state;
   if (!state.started || time < state.time + s.step_length || time > StampCheck::kLatest) return false;
-  if (to_seconds(time - state.last_frame) <= s.configuration.tracking.hold_time) return false;
+  if (to_seconds(time - state.last_frame) <= s.hold_time()) return false;
   s.result.restarted = false;
   s.clear_result();
-  s.pass_without_frames(time);
+  s.pass_without_frames(time, s.hold_time());
   s.report(state.time);
   s.render();
   return true;

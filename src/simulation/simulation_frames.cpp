@@ -75,9 +75,16 @@ void Simulation::Impl::list_near_hands() {
   neighbours.begin_frame(state.hands, state.bodies, carried);
 }
 
+/// The stream's interval counts up to that of three frames a second: a longer one is a gap.
+double Simulation::Impl::hold_time() const {
+  constexpr double kIntervals = 1.5, kMaxInterval = 0.34;  // [s]
+  return std::max(configuration.tracking.hold_time,
+                  kIntervals * std::min(to_seconds(state.stamps.interval), kMaxInterval));
+}
+
 /// Advances without frames: hands stand still for hold_time and are then lost; bodies advance by whole steps
 /// from the last frame.
-void Simulation::Impl::pass_without_frames(Nanoseconds until) {
+void Simulation::Impl::pass_without_frames(Nanoseconds until, double hold_time) {
   if (until - state.time > kMaxGap) state.time = until;
   for (HandTrack& track : state.hands) {
     track.held = track.active;
@@ -87,20 +94,20 @@ void Simulation::Impl::pass_without_frames(Nanoseconds until) {
   }
   isolated.clear();
   while (state.time + step_length <= until) {
-    lose_hands(state.time);
+    lose_hands(state.time, hold_time);
     begin_hands(0.0);
     advance_step(0.0, to_seconds(step_length));
     state.time += step_length;
   }
 }
 
-void Simulation::Impl::lose_hands(Nanoseconds now) {
+void Simulation::Impl::lose_hands(Nanoseconds now, double hold_time) {
   for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
     const HandTrack& track = state.hands[slot];
-    const bool unseen = to_seconds(now - track.last_seen) > configuration.tracking.hold_time;
+    const bool unseen = to_seconds(now - track.last_seen) > hold_time;
     if (track.active && unseen) end_interactions(slot, now);
   }
-  lose_unseen_hands(now, configuration.tracking.hold_time, state.hands, result.events);
+  lose_unseen_hands(now, hold_time, state.hands, result.events);
   assist.lose_hands(now, state);
 }
 

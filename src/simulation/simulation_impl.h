@@ -45,8 +45,10 @@ struct Simulation::Impl {
   int steps_needed(Nanoseconds frame);
   void begin_hands(double seconds);
   void list_near_hands();
-  void pass_without_frames(Nanoseconds until);
-  void lose_hands(Nanoseconds now);
+  /// Time for which a missing hand is kept [s]: tracking/hold_time, and at least 1.5 intervals of the stream.
+  double hold_time() const;
+  void pass_without_frames(Nanoseconds until, double hold_time);
+  void lose_hands(Nanoseconds now, double hold_time);
   /// Contacts as they are at the frame's end, with the mean of their forces and the sum of their impulses
   /// since the frame before; contacts that have ended since then; then the events that follow from them, and
   /// the tracked hands.

@@ -104,6 +104,9 @@ double low_variance(const SeenNoise& noise) {
 /// Rms speed of a hand that has just appeared [m/s].
 constexpr double kFirstSpeed = 0.5;
 
+/// Lag behind a hand that sets off, which the filter does not exceed once it has seen it [m].
+constexpr double kMaxLag = 0.002;
+
 /// Gains of the innovation on position, and on velocity [1/s].
 struct Gain {
   double position, velocity;
@@ -119,13 +122,22 @@ struct Gain {
 /// All axes and points share P, as they share a and r, so that three numbers are enough for a hand.
 /// Only the ratio of a to r determines the gains in the end. A hand that appears is within r of its sample,
 /// at an rms speed of kFirstSpeed.
-Gain update(double acceleration, double noise, double elapsed, MotionVariance& variance) {
+///
+/// A hand that sets off leaves the prediction behind by a lag d that P knows nothing of. Earlier samples fade
+/// then (Xia, Rao, Ying & Shen 1994):
+///     P <- P max(1, min(d^4 / r^2, r^2 d / kMaxLag) / P_xx)
+/// so that K_x is at least the smaller of d / (d + kMaxLag), which leaves less than kMaxLag of the lag, and
+/// d^4 / (d^4 + r^4), which disregards what is below the noise.
+Gain update(double acceleration, double noise, double lag, double elapsed, MotionVariance& variance) {
   if (variance.speed == 0.0) variance = {noise * noise, 0.0, kFirstSpeed * kFirstSpeed};
   const double q = acceleration * acceleration * elapsed * elapsed;
-  const double position = variance.position + elapsed * (2.0 * variance.mixed + elapsed * variance.speed) +
-                          0.25 * q * elapsed * elapsed;
-  const double mixed = variance.mixed + elapsed * variance.speed + 0.5 * q * elapsed;
-  const double speed = variance.speed + q;
+  double position = variance.position + elapsed * (2.0 * variance.mixed + elapsed * variance.speed) +
+                    0.25 * q * elapsed * elapsed;
+  const double known = lag * std::min(lag * lag * lag / (noise * noise), noise * noise / kMaxLag);
+  const double fading = std::max(1.0, known / position);
+  position *= fading;
+  const double mixed = fading * (variance.mixed + elapsed * variance.speed + 0.5 * q * elapsed);
+  const double speed = fading * (variance.speed + q);
   const double total = position + noise * noise;
   const Gain gain{position / total, mixed / total};
   variance = {(1.0 - gain.position) * position, (1.0 - gain.position) * mixed, speed - gain.velocity * mixed};
@@ -164,13 +176,34 @@ void observe_noise(FilterMemory& memory) {
   variance = {factor * variance.position, factor * variance.mixed, factor * variance.speed};
 }
 
+/// Distance by which the prediction lags behind the hand [m]; 0 for a hand that the filter follows.
+///
+///     d^2 = max(0, <z - x>.<z' - x'>)
+/// with < > the mean over the joints (the ends of bones), and z' - x' what the last frame left of its
+/// innovation. A hand that sets off leaves all joints behind in one direction, frame after frame. The mean
+/// product of noise is zero if it differs from frame to frame or from joint to joint.
+double lag_of(const FilterMemory& memory, double elapsed) {
+  const Hand &now = memory.history.samples[0], &before = memory.history.samples[1], &last = memory.filtered;
+  Vector3 innovation = Vector3::Zero(), left = Vector3::Zero();
+  int joints = 0;
+  for (std::size_t point = 3; point < 2 + 2 * kPhalanges; point += 2) {
+    if (!has_point(now, point) || !has_point(last, point)) continue;
+    const Vector3& at = hand_point(last, point);
+    innovation += hand_point(now, point) - at - elapsed * memory.velocity.points[point];
+    left += hand_point(before, point) - at;
+    ++joints;
+  }
+  return joints > 0 ? std::sqrt(std::max(0.0, innovation.dot(left))) / joints : 0.0;
+}
+
 /// Prediction x + T v, innovation z - prediction; a point that appears begins at rest where it is seen.
 Hand constant_velocity(double elapsed, const FilterConfiguration& filter, FilterMemory& memory) {
   if (!filter.noise) observe_noise(memory);
   const double noise = filter.noise.value_or(filter_noise(memory.noise));
   Hand hand = memory.history.samples[0];
   const double speed = true_speed(memory, noise);
-  const Gain gain = update(filter.acceleration + filter.agility * speed, noise, elapsed, memory.variance);
+  const Gain gain = update(filter.acceleration + filter.agility * speed, noise, lag_of(memory, elapsed),
+                           elapsed, memory.variance);
   for (std::size_t point = 0; point < kHandPoints; ++point) {
     Vector3& velocity = memory.velocity.points[point];
     if (!has_point(hand, point) || !has_point(memory.filtered, point)) {
@@ -221,6 +254,6 @@ extern const HandFilter constant_velocity_filter{
           {"acceleration", " [m/s^2]", {0.001, 1000}, {0.01, 10}, &F::acceleration},
           {"agility", " [1/s]", {0, 1000}, {0, 30}, &F::agility}};
     },
-    [](const FilterConfiguration& filter) { return filter.noise ? 1 : kNoiseSamples; }, constant_velocity};
+    [](const FilterConfiguration& filter) { return filter.noise ? 2 : kNoiseSamples; }, constant_velocity};
 
 }  // namespace mrhi

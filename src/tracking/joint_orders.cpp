@@ -118,6 +118,16 @@ bool is_shared(const HandJoints& hand, const Vector3& point) {
   return fingers > 1;
 }
 
+/// True if a finger's joint is as near to the origin as to a wrist.
+bool is_near_origin(const HandJoints& hand) {
+  constexpr double kMaxToWrist = 0.2;  // of the nearest joint, in large hands too [m]
+  for (const auto& joints : hand.joints)
+    if (std::any_of(joints.begin(), joints.end(),
+                    [](const Joint& j) { return j && j->norm() < kMaxToWrist; }))
+      return true;
+  return false;
+}
+
 constexpr std::size_t kNone = JointOrder::kNotListed;
 
 /// Fingers one after the other from `first`, each with `listed` joints of a finger, of the thumb with four.
@@ -196,8 +206,13 @@ std::size_t drop_placeholders(HandJoints& hand, bool wrist_is_origin) {
   for (std::size_t i = 0; i < kHandJoints; ++i)
     placeholder[i] =
         joint(hand, i) && (*joint(hand, i) == Vector3::Zero() || is_shared(hand, *joint(hand, i)));
-  if (wrist_is_origin && std::count(placeholder.begin() + 1, placeholder.end(), true) == 0)
+  if (wrist_is_origin && std::count(placeholder.begin() + 1, placeholder.end(), true) == 0 &&
+      is_near_origin(hand))
     placeholder[0] = false;
+  if (hand.palm_centre && hand.palm_centre->isZero(0.0)) {
+    hand.palm_centre.reset();
+    ++dropped;
+  }
   for (std::size_t i = 0; i < kHandJoints; ++i) {
     if (!placeholder[i]) continue;
     joint(hand, i).reset();

@@ -127,6 +127,14 @@ SourceFrame JointsInput::take(TrackerFrame input, const Device& device) {
         kStep, text::number(to_seconds(joints.stamp - verdict.stamp)) + " s on " + input.stream);
   joints.stamp = verdict.stamp;
   if (verdict.is_step) joints.stamp += share_correction(stream);
+  const Nanoseconds since = joints.stamp - stream.taken;
+  if (stream.is_burst(joints.stamp)) {
+    result.reason = kBurst;
+    result.detail = text::number(1e3 * to_seconds(since)) +
+                    " ms after another frame; usual: " + text::number(1e3 * to_seconds(stream.interval)) +
+                    " ms";
+    return result;
+  }
   correct(stream, joints, result);
   if (input.one_of_a_side) gaps_.fill(joints);
   result = completed(joints, device, std::move(result));
@@ -134,6 +142,23 @@ SourceFrame JointsInput::take(TrackerFrame input, const Device& device) {
   result.frame = pairs_.take(*input.side, *result.frame);
   result.waits = !result.frame;
   return result;
+}
+
+/// True for a frame whose stamp is far closer to the last one taken than the stream's frames usually are.
+///
+/// Frames that a network or a busy machine has delayed arrive together. If they are stamped then, their hands
+/// seem many times as fast as they were, and a hand tears itself from what it holds. The first of them alone
+/// has a speed that is about right. A stream with slightly uneven stamps loses nothing.
+bool JointsInput::Stream::is_burst(Nanoseconds stamp) {
+  constexpr Nanoseconds kMinFraction = 3;  // smallest interval: the usual one divided by this
+  constexpr Nanoseconds kMeanFrames = 16;
+  const Nanoseconds since = stamp - newest;
+  newest = stamp;
+  const bool goes_on = since > 0 && since <= StampCheck::kAhead;
+  if (goes_on) interval += interval > 0 ? (since - interval) / kMeanFrames : since;
+  if (goes_on && kMinFraction * (stamp - taken) < interval) return true;
+  taken = stamp;
+  return false;
 }
 
 /// Hands of one tracker share their clock steps: adopts the correction that another stream has found for this

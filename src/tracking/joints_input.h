@@ -28,8 +28,9 @@ std::optional<double> relative_size(const HandJoints& hand);
 constexpr std::size_t kMinKnownBones = 8;
 
 /// Drops joints that are at a placeholder: the origin, and any point at which joints of two fingers are
-/// exactly. A tracker writes them for what it does not see. Keeps the wrist at the origin if
-/// `wrist_is_origin`: some trackers report a hand relative to its wrist. Returns how many joints it drops.
+/// exactly. A tracker writes them for what it does not see. So it may for the palm centre. Keeps the wrist at
+/// the origin if `wrist_is_origin` and the fingers are near: some trackers report a hand relative to its
+/// wrist. Returns how many points it drops.
 std::size_t drop_placeholders(HandJoints& hand, bool wrist_is_origin = false);
 
 /// Drops joints that make a bone impossibly long, at most a third of those known. Returns how many.
@@ -144,7 +145,7 @@ struct TrackerFrame {
   bool one_of_a_side = true;           ///< it never has two hands of one side
 };
 
-/// Converts trackers' frames to hands in world, for live nodes, bags and recordings: units, stamps,
+/// Converts trackers' frames to hands in world, for live nodes, bags and recordings: units, stamps, bursts,
 /// placeholders, stray joints, gaps, and pairs of hands. Depends only on its input, so that a replay repeats
 /// the live node.
 class JointsInput {
@@ -155,6 +156,7 @@ class JointsInput {
   static constexpr const char* kOrder = "order of joints recognised";
   static constexpr const char* kUnusable = "unusable hand";
   static constexpr const char* kNoStamp = "stamp out of range";
+  static constexpr const char* kBurst = "frames of a burst";
   static const std::vector<const char*>& corrections();
 
   /// Pose of the tracker in world at a stamp.
@@ -170,7 +172,11 @@ class JointsInput {
  private:
   struct Stream {
     StampSteps steps;
+    Nanoseconds newest = 0, taken = 0;  // stamps
+    Nanoseconds interval = 0;           // running mean, also of frames that are left out; 0: unknown
     std::array<bool, 2> wrist_moves{}, is_placeholder{};  // by side
+
+    bool is_burst(Nanoseconds stamp);
   };
   Nanoseconds share_correction(Stream& stream);
   void correct(Stream& stream, JointsFrame& joints, SourceFrame& result) const;

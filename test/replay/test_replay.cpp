@@ -3,6 +3,11 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include "mr_hand_interaction/scene/scene_loader.h"
 #include "replay/replay_files.h"
 #include "replay/run.h"
@@ -86,6 +91,74 @@ TEST(Replay, unusable_frames_are_counted_and_the_run_goes_on) {
   EXPECT_EQ(summary["frames"].as<std::size_t>(), frames.size() - 2);
   EXPECT_EQ(summary["rejected"][to_string(Rejection::stamp_not_increasing)].as<int>(), 1);
   EXPECT_EQ(summary["rejected"]["unusable hand"].as<int>(), 1);
+}
+
+/// Times of the events of a kind in a run's events.csv [s].
+std::vector<double> times_of(const std::string& kind, const std::string& events) {
+  std::vector<double> times;
+  for (const std::string& line : test::lines_of(events))
+    if (line.find("," + kind + ",") != std::string::npos) times.push_back(std::stod(line));
+  return times;
+}
+
+// Up to hold_time. The first frame after a gap of more than 0.1 s was left out.
+TEST(Replay, a_gap_in_a_recording_that_is_shorter_than_hold_time_drops_nothing) {
+  Replayed replayed("grasp_cube");
+  const auto whole = read_recording_csv(replayed.arguments.input);
+  for (const double gap : {0.12, 0.18, 0.195}) {
+    std::vector<JointsFrame> frames;
+    for (const JointsFrame& frame : whole)
+      if (to_seconds(frame.stamp) < 4.0 || to_seconds(frame.stamp) > 4.0 - 1.0 / kTrackerRate + gap)
+        frames.push_back(frame);
+    test::write_recording(replayed.arguments.input, frames);
+    const YAML::Node summary = replayed.run("out");
+    EXPECT_EQ(summary["rejected"].size(), 0u) << gap;
+    const auto ends = times_of("GRASP_END", replayed.folder / "out/events.csv");
+    ASSERT_EQ(ends.size(), 1u) << gap;
+    EXPECT_GT(ends[0], 5.5) << gap;
+  }
+}
+
+TEST(Replay, a_stray_stamp_far_ahead_is_left_out_alone) {
+  Replayed replayed("nudge");
+  auto frames = test::motion_frames("nudge", kTrackerRate, 0);
+  frames[10].stamp += 5'000'000'000;
+  test::write_recording(replayed.arguments.input, frames);
+  const YAML::Node summary = replayed.run("out");
+  EXPECT_EQ(summary["frames"].as<std::size_t>(), frames.size() - 1);
+  EXPECT_EQ(summary["rejected"][to_string(Rejection::stamp_ahead)].as<int>(), 1);
+}
+
+// The hand sways by 0.1 m once a second while it holds the cube. Frames that arrive together and are stamped
+// then made it seem to jerk, and it lost the cube.
+TEST(Replay, frames_that_arrive_in_bursts_do_not_drop_what_the_hand_holds) {
+  Replayed replayed("grasp_cube");
+  for (const std::size_t size : {3u, 6u}) {
+    auto frames = test::motion_frames("grasp_cube", 115.0, 0);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const double t = to_seconds(frames[i].stamp), sway = std::clamp(t - 3.2, 0.0, 2.0);
+      const Vector3 by(0.1 * std::min(1.0, 3.0 * std::min(sway, 2.0 - sway)) * std::sin(2.0 * M_PI * sway), 0,
+                       0);
+      for (HandJoints& hand : frames[i].hands) {
+        *hand.palm_centre += by;
+        *hand.wrist += by;
+        for (auto& finger : hand.joints)
+          for (auto& joint : finger)
+            if (joint) *joint += by;
+      }
+    }
+    for (std::size_t first = 0; first + size <= frames.size(); first += size)
+      for (std::size_t i = 0; i < size; ++i)
+        frames[first + i].stamp = frames[first + size - 1].stamp + static_cast<Nanoseconds>(i) * 300'000;
+    test::write_recording(replayed.arguments.input, frames);
+    replayed.run("out");
+    const auto begins = times_of("GRASP_BEGIN", replayed.folder / "out/events.csv"),
+               ends = times_of("GRASP_END", replayed.folder / "out/events.csv");
+    ASSERT_EQ(begins.size(), 1u) << size;
+    ASSERT_EQ(ends.size(), 1u) << size;
+    EXPECT_LT(begins[0], 3.2) << size;
+    EXPECT_GT(ends[0], 5.5) << size;
+  }
 }
 
 TEST(Replay, objects_start_where_and_as_they_are_told) {

@@ -264,6 +264,29 @@ TEST(Silence, of_more_than_a_minute_is_not_made_up_for) {
   }
 }
 
+// A hold_time of 0, and the default of 0.2 s at 4 frames a second. The rate is known from the second frame
+// on.
+TEST(HoldTime, shorter_than_a_frame_does_not_lose_a_hand_that_is_in_every_frame) {
+  for (const auto& [hold_time, rate] : {std::pair{0.0, 120.0}, {0.0, 30.0}, {0.01, 60.0}, {0.2, 4.0}}) {
+    Configuration configuration = unfiltered();
+    configuration.tracking.hold_time = hold_time;
+    Simulation simulation(drifting_cube(), configuration);
+    const Hand hand = testing::finger(Vector3(0, 0.5, 0), Vector3(0, 0.5, 0.02), 0.008);
+    int lost = 0;
+    double t = 0.0;
+    for (int i = 0; i < 20; ++i, t += 1.0 / rate) {
+      simulation.begin({at(t), {hand}}, at(t));
+      while (simulation.step()) {
+      }
+      for (const Event& event : simulation.end().events) lost += i > 1 && event.kind == EventKind::hand_lost;
+      if (i > 0) EXPECT_FALSE(simulation.advance_without_hands(at(t + 1.4 / rate))) << rate;
+    }
+    EXPECT_EQ(lost, 0) << hold_time << " s, " << rate << " Hz";
+    EXPECT_TRUE(simulation.advance_without_hands(at(t + std::max(hold_time, 1.0 / rate) + 0.01)));
+    EXPECT_TRUE(simulation.result().tracked.empty());
+  }
+}
+
 TEST(Silence, within_hold_time_nothing_is_computed_ahead_of_the_next_frame) {
   Simulation simulation(drifting_cube(), unfiltered());
   run(simulation, 0, 70);

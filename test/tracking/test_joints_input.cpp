@@ -96,6 +96,63 @@ TEST(Placeholders, AreNotTheWristOfAHandThatIsReportedRelativeToIt) {
   EXPECT_EQ(later.corrected[0].first, JointsInput::kJointsLeftOut);
 }
 
+/// Drivers that send zeros for what they do not know.
+TEST(Placeholders, AreAWristAndAPalmAtTheOriginFarFromTheFingers) {
+  const SourceFrame whole = [] {
+    JointsInput input;
+    return input.take({"", {1, {hand_away()}}, {}, {}}, [](Nanoseconds) { return Pose(); });
+  }();
+  for (const double away : {0.3, 0.6, 1.0}) {
+    HandJoints hand = hand_away();
+    const Vector3 moved = away * kAway.normalized() - *hand.wrist;
+    for (auto& finger : hand.joints)
+      for (auto& joint : finger) *joint += moved;
+    hand.wrist = hand.palm_centre = Vector3::Zero();
+    JointsInput input;
+    const SourceFrame frame = input.take({"", {1, {hand}}, {}, {}}, [](Nanoseconds) { return Pose(); });
+    ASSERT_TRUE(frame.frame) << frame.detail;
+    ASSERT_EQ(frame.frame->hands.size(), 1u);
+    EXPECT_LT((frame.frame->hands[0].wrist - whole.frame->hands[0].wrist - moved).norm(), 0.005) << away;
+    EXPECT_LT((frame.frame->hands[0].palm.position - whole.frame->hands[0].palm.position - moved).norm(),
+              0.005)
+        << away;
+    ASSERT_EQ(frame.corrected.size(), 1u);
+    EXPECT_EQ(frame.corrected[0].second,
+              "hand 7: 2 at a placeholder, 0 at the end of a bone that is too long");
+  }
+}
+
+/// Frames that a network has kept arrive together, each with the time of its arrival.
+TEST(Bursts, LeaveOneFrameEach) {
+  constexpr Nanoseconds kTick = 8'333'333;
+  for (const Nanoseconds between : {20'000, 500'000, 1'000'000}) {
+    JointsInput input;
+    Nanoseconds stamp = 0;
+    for (int i = 0; i < 60; ++i) ASSERT_TRUE(taken(input, hand_away(), stamp += kTick).frame);
+    for (int burst = 0; burst < 100; ++burst) {
+      stamp += 3 * kTick;
+      EXPECT_TRUE(taken(input, hand_away(), stamp).frame);
+      for (int late = 1; late < 3; ++late)
+        EXPECT_EQ(taken(input, hand_away(), stamp + late * between).reason, JointsInput::kBurst) << burst;
+    }
+  }
+}
+
+// A stream may double its rate, as a camera's does in bright light.
+TEST(Bursts, AreNoneInAStreamOfUnevenStampsOrInAFastOne) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uneven(0.7, 1.3);
+  JointsInput input, fast;
+  Nanoseconds stamp = 0;
+  for (const double rate : {60.0, 30.0, 60.0, 120.0}) {
+    for (int i = 0; i < 100; ++i) {
+      stamp += i == 50 ? 90'000'000 : static_cast<Nanoseconds>(1e9 / rate * uneven(random));
+      EXPECT_TRUE(taken(input, hand_away(), stamp).frame) << rate << " " << i;
+    }
+  }
+  for (int i = 1; i < 200; ++i) EXPECT_TRUE(taken(fast, hand_away(), i * 1'000'000).frame) << i;
+}
+
 TEST(StrayJoints, AtTheEndOfABoneThatIsTooLongAreDroppedAndTheHandStays) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> number(-1.0, 1.0);

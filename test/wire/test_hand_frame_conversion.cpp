@@ -37,6 +37,16 @@ TEST(HandFrameConversion, AbsentPhalangesAndThePalmAreLeftOut) {
   EXPECT_EQ(message.hands[0].phalanges[0].bone, mr_hand_interaction::Phalanx::PROXIMAL);
 }
 
+TEST(HandFrameConversion, AWristThatIsNotKnownIsPlacedAsAnAdults) {
+  HandFrame sent = sample_frame();
+  for (Hand& hand : sent.hands) hand.palm.position += Vector3(1.0, 0.0, 0.0);
+  auto message = to_message(sent, "world");
+  for (auto& hand : message.hands) hand.wrist = geometry_msgs::Point();
+  const HandFrame back = from_message(message);
+  for (std::size_t h = 0; h < sent.hands.size(); ++h)
+    EXPECT_LT((back.hands[h].wrist - sent.hands[h].wrist - Vector3(1.0, 0.0, 0.0)).norm(), 0.015);
+}
+
 TEST(HandFrameConversion, TouchingGoesWithItsPhalanx) {
   Touching touching{};
   touching[static_cast<std::size_t>(capsule_index(2, 3))] = true;
