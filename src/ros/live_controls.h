@@ -90,8 +90,8 @@ class BetweenFrames {
   ros::AsyncSpinner spinner_{1, &beside_};
 };
 
-/// Interactive markers that move free objects with the mouse in rviz, at ~place. Feedback arrives by the
-/// global callback queue, perhaps in another thread; dragged() polls it.
+/// Interactive markers that move free objects with the mouse in rviz, at ~place. Feedback arrives in the
+/// server's own thread; dragged() polls it.
 class Placing {
  public:
   Placing(const ros::NodeHandle& private_node, const std::string& fixed_frame)
@@ -99,7 +99,10 @@ class Placing {
 
   void turn(bool on, const Simulation& simulation) {
     if (on == (server_ != nullptr)) return;
-    server_ = on ? std::make_unique<interactive_markers::InteractiveMarkerServer>(topic_) : nullptr;
+    // With a thread of its own it ends that before its publishers, to which a timer of it publishes.
+    constexpr bool kOwnThread = true;
+    server_ =
+        on ? std::make_unique<interactive_markers::InteractiveMarkerServer>(topic_, "", kOwnThread) : nullptr;
     if (on) renew(simulation);
     const std::lock_guard<std::mutex> lock(drags_mutex_);
     drags_.clear();

@@ -36,13 +36,18 @@ MeshFileSystem::MeshFileSystem(const std::string& mesh_file) : mesh_(plain(mesh_
 
 bool MeshFileSystem::Exists(const char* file) const {
   const fs::path path = plain(file);
+  if (!is_file(path)) missing_ = path.filename().string();
   return is_file(path) && why_refused(path).empty();
 }
 
 Assimp::IOStream* MeshFileSystem::Open(const char* file, const char* mode) {
   const fs::path path = plain(file);
   std::error_code ignored;
-  if (*mode != 'r' || !fs::exists(path, ignored)) return nullptr;
+  if (*mode != 'r') return nullptr;
+  if (!fs::exists(path, ignored)) {
+    missing_ = path.filename().string();
+    return nullptr;
+  }
   const std::string why = why_refused(path), name = path.lexically_relative(mesh_.parent_path()).string();
   if (!why.empty() && refusal_.empty())
     refusal_ = "names the file " + text::quoted(name, 120) + ", which " + why;

@@ -27,6 +27,8 @@ class MeshFileSystem : public Assimp::DefaultIOSystem {
   const std::set<std::string>& opened() const { return opened_; }
   /// Reason why a file was refused, with its name; continues a message after the mesh's name. Empty: none.
   const std::string& refusal() const { return refusal_; }
+  /// Name of the last file that is not there; empty: none.
+  const std::string& missing() const { return missing_; }
 
  private:
   std::string why_refused(const std::filesystem::path& file) const;
@@ -35,6 +37,7 @@ class MeshFileSystem : public Assimp::DefaultIOSystem {
   std::set<std::filesystem::path> folders_;  ///< of the mesh and of the target of a symlink to it
   std::set<std::string> opened_;
   std::string refusal_;
+  mutable std::string missing_;
 };
 
 }  // namespace mrhi

@@ -230,11 +230,13 @@ LoadedMesh read_by_assimp(const MeshFile& source, Assimp::Importer& importer) {
   const aiScene* scene =
       stl.empty() ? importer.ReadFile(file, aiProcess_Triangulate)
                   : importer.ReadFileFromMemory(stl.data(), stl.size(), aiProcess_Triangulate, "stl");
-  const std::string problem = importer.GetErrorString();
+  std::string problem = importer.GetErrorString();
   if (problem.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
   const bool is_read = scene != nullptr && scene->mRootNode != nullptr;
   if (!is_read && !files->refusal().empty()) throw std::runtime_error(files->refusal());
   if (!is_read) {
+    // Before 5.1 assimp says nothing of a glTF's missing file.
+    if (problem.empty() && !files->missing().empty()) problem = files->missing() + " is not there";
     throw std::runtime_error("cannot be read: " + text::one_line(problem, 120) +
                              "; allowed: a whole STL, OBJ, DAE, PLY or glTF file");
   }

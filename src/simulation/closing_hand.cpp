@@ -14,9 +14,6 @@ constexpr double kMinClosingRatio = 0.25;
 constexpr double kMaxLineDistance = 0.01;
 /// Largest distance at which a hand's closest faces are searched [m].
 constexpr double kSearchDistance = 0.1;
-/// Largest cosine between the normals of these faces. A fingertip that taps a cube has the thumb beside the
-/// adjacent face.
-constexpr double kMaxOpposingCosine = -0.3;
 
 double distance_from_axis(const Vector3& point, const Capsule& capsule) {
   const Vector3 along = capsule.end - capsule.start;

@@ -15,8 +15,9 @@ constexpr double kBuriedDepth = 0.015;
 /// Compliance, beyond its depth, of a hand inside a body that it must not grasp: more than any finger moves
 /// in a step, so that it applies no force within the step either [m].
 constexpr double kNoForceCompliance = 1.0;
-/// Rate at which a finger that has stopped or is opposed regains its force [m/s].
-constexpr double kRecoverySpeed = 0.03;
+/// Rate at which a finger that has stopped or is opposed regains its force [m/s]; what its pad yields it
+/// regains at once [m].
+constexpr double kRecoverySpeed = 0.03, kSoftDepth = 0.002;
 /// Distance of a body from its place in the hand at which the grip becomes active [m].
 constexpr double kMaxOffset = 0.0015;
 /// Time constant of Grip::mean_aperture [s].
@@ -24,7 +25,7 @@ constexpr double kMeanAperture = 0.05;
 /// A single frame's aperture counts beyond this multiple of the tracker's noise.
 constexpr double kNoiseMargin = 4.0;
 /// The hand has released the body if the gaps between both sides and the body sum to this clearance [m],
-constexpr double kReleaseClearance = 0.001;
+constexpr double kReleaseClearance = 0.0008;
 /// or to -kPadDepth, once it has opened by this fraction of the distance to touch_aperture, and by this [m].
 constexpr double kReleaseFraction = 0.9, kMinRelease = 0.015;
 /// Fingers that have opened by this fraction of that distance do not carry the body.
@@ -245,13 +246,23 @@ void GraspAssist::follow(SimulationState& state, Grip& grip) {
 
 /// Begins a grip on each object that a hand has between opposing contacts, or adds fingers to it. A `seen`
 /// hand takes beyond kPadDepth; a lost one all that it held, as its springs are gone. Does not change a grip
-/// that is active, released or lost.
+/// that is active, released or lost. The grip of an object that must not be grasped is released from the
+/// start, and begins at the first opposing contacts, be they another hand's.
 void GraspAssist::take_held_objects(bool seen, double fraction, SimulationState& state) const {
   const std::vector<Contact>& contacts = state.contacts;
   for (auto one = contacts.begin(); one != contacts.end(); ++one) {
     const std::size_t slot = one->key.hand, body = one->key.body;
     const GraspMode mode = objects_.mode_of(body);
     if (one->depth <= 0.0 || mode == GraspMode::free || state.hands[slot].active != seen) continue;
+    if (mode == GraspMode::never) {
+      if (find_grip(slot, body, state) != state.grips.end() || !objects_.is_opposed(*one, contacts, true))
+        continue;
+      OpposingContacts one_of_them;
+      one_of_them.body = body, one_of_them.fingers_mask = 1 << 1;
+      one_of_them.base = one_of_them.fingers = one->point;
+      take(slot, one_of_them, fraction, state);
+      continue;
+    }
     const bool visited = std::any_of(contacts.begin(), one, [&](const Contact& before) {
       return before.depth > 0.0 && before.key.hand == slot && objects_.same_object(before.key.body, body);
     });
@@ -266,7 +277,7 @@ void GraspAssist::take_held_objects(bool seen, double fraction, SimulationState&
     if (is_buried(slot, state) || is_shown_in(slot, body, state)) continue;
     auto found = objects_.opposing_contacts(slot, body, false, contacts);
     if (!found) found = objects_.opposing_contacts(slot, body, true, contacts);
-    if (!found || (seen && mode != GraspMode::never && found->depth <= kPadDepth)) continue;
+    if (!found || (seen && found->depth <= kPadDepth)) continue;
     if (is_new || known->by_palm != found->by_palm || (found->fingers_mask & ~known->fingers) != 0)
       take(slot, *found, fraction, state);
   }
@@ -327,7 +338,7 @@ void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, doubl
 /// Sets the contact's compliance. A finger that closes on a body touches it lightly until another part of the
 /// hand opposes it, and so does a hand that has released it: the finger's own motion adds no force. It
 /// resists the body's motion, so it still carries what it carried, and what falls onto it. A finger that has
-/// stopped, or is opposed, regains its force slowly.
+/// stopped, or is opposed, regains its force slowly, but for what a pad yields.
 void GraspAssist::set_compliance(const SimulationState& state, double step, Contact& contact) const {
   const bool released = std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
     return grip.released && objects_.is_in(grip, contact.key.hand, contact.key.body);
@@ -338,7 +349,7 @@ void GraspAssist::set_compliance(const SimulationState& state, double step, Cont
   });
   const double kept = std::min(contact.compliance, std::max(contact.depth, 0.0));
   if (!released && (!closes || objects_.is_opposed(contact, state.contacts))) {
-    contact.compliance = std::max(kept - kRecoverySpeed * step, 0.0);
+    contact.compliance = kept <= kSoftDepth ? 0.0 : kept - kRecoverySpeed * step;
     return;
   }
   contact.struck = true;

@@ -8,9 +8,6 @@
 namespace mrhi {
 namespace {
 
-/// Largest cosine between the normals of contacts on opposite faces.
-constexpr double kMaxOpposingCosine = -0.3;
-
 GraspMode resolved_mode(const Scene& scene, int body, const Configuration& configuration) {
   const bool is_implicit = configuration.contact_model == ContactModelKind::implicit;
   if (!is_implicit || scene.bodies[body].fixed) return GraspMode::free;
@@ -57,15 +54,20 @@ TouchingSides GraspObjects::touching_sides(const Grip& grip, const Contacts& con
 }
 
 bool GraspObjects::slips(const Grip& grip, const Contacts& contacts) const {
-  return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
-    return contact.friction != Friction::sticking && contact.touching() &&
-           is_in(grip, contact.key.hand, contact.key.body);
-  });
+  double push[2] = {}, slipping[2] = {};  // of fingers and of the base [N]
+  for (const Contact& contact : contacts) {
+    if (!contact.touching() || !is_in(grip, contact.key.hand, contact.key.body)) continue;
+    const bool side = is_base(grip.by_palm, contact.key.capsule);
+    const double normal_force = std::max(0.0, -contact.force.dot(contact.normal));
+    push[side] += normal_force;
+    if (contact.friction != Friction::sticking) slipping[side] += normal_force;
+  }
+  return slipping[0] > 0.5 * push[0] || slipping[1] > 0.5 * push[1];
 }
 
-bool GraspObjects::is_opposed(const Contact& contact, const Contacts& contacts) const {
+bool GraspObjects::is_opposed(const Contact& contact, const Contacts& contacts, bool by_any_hand) const {
   return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& other) {
-    return other.key.hand == contact.key.hand && !other.ignored &&
+    return (by_any_hand || other.key.hand == contact.key.hand) && !other.ignored &&
            same_object(other.key.body, contact.key.body) &&
            other.normal.dot(contact.normal) < kMaxOpposingCosine;
   });

@@ -11,6 +11,10 @@
 
 namespace mrhi {
 
+/// Largest cosine between the normals of opposite faces. A fingertip that taps a cube has the thumb beside
+/// the adjacent face.
+constexpr double kMaxOpposingCosine = -0.3;
+
 /// Opposing contacts of a hand that could hold an object between them. World.
 struct OpposingContacts {
   double depth = 0.0;             ///< of the deeper contact [m]
@@ -54,11 +58,11 @@ class GraspObjects {
   /// True if all fingers that touch the object take part in the grip.
   bool only_fingers_of(const Grip& grip, const Contacts& contacts) const;
   TouchingSides touching_sides(const Grip& grip, const Contacts& contacts) const;
-  /// True if a contact of the grip slips.
+  /// True if contacts slip that carry more than half of the push of one of the grip's sides.
   bool slips(const Grip& grip, const Contacts& contacts) const;
-  /// True if the hand touches the same object on a face opposite to this contact's, or will soon: contacts
-  /// begin 1 mm before the surface.
-  bool is_opposed(const Contact& contact, const Contacts& contacts) const;
+  /// True if the same hand, or with `by_any_hand` any hand, touches the same object on a face opposite to
+  /// this contact's, or will soon: contacts begin 1 mm before the surface.
+  bool is_opposed(const Contact& contact, const Contacts& contacts, bool by_any_hand = false) const;
   /// True if a finger of the hand opposes its thumb or palm across the object.
   bool is_opposed(std::size_t hand, std::size_t body, bool by_palm, const Contacts& contacts) const;
   std::optional<OpposingContacts> opposing_contacts(std::size_t hand, std::size_t body, bool by_palm,

@@ -286,6 +286,27 @@ TEST(GraspAssist, fingers_closed_round_what_is_never_grasped_apply_no_force) {
   EXPECT_LT(strongest, 1e-3);
 }
 
+// Either hand has one finger on it.
+TEST(GraspAssist, two_hands_do_not_hold_what_is_never_grasped) {
+  Body cube = testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1);
+  cube.grasp = GraspMode::never;
+  Simulation simulation(testing::scene_of(cube), Configuration());
+  double strongest = 0.0;
+  for (int i = 0; i <= 120; ++i) {
+    const double t = i / 120.0, deep = 0.006 * testing::smooth(t, 0.4) - 0.002;
+    std::vector<Hand> hands;
+    for (const double side : {1.0, -1.0}) {
+      hands.push_back(testing::empty_hand(side > 0.0 ? 1 : 2, side > 0.0 ? Side::right : Side::left));
+      testing::add_fingertip(hands.back(), capsule_index(1, 3), Vector3(side * (kHalf - deep), 0, 0),
+                             side * Vector3::UnitX(), 1.2);
+    }
+    ASSERT_EQ(simulation.advance({testing::at(t), hands}), Rejection::none);
+    for (const Contact& contact : simulation.result().contacts)
+      strongest = std::max(strongest, contact.force.norm());
+  }
+  EXPECT_LT(strongest, 1e-3);
+}
+
 // Two fingers of a person's strength, friction 0.3: contact supports up to 18 N, and grasp assist as much
 // again.
 TEST(GraspAssist, supports_at_most_twice_the_friction_of_the_fingers) {
@@ -491,6 +512,39 @@ TEST(GraspAssist, takes_nothing_that_contact_holds) {
   const Outcome outcome = outcome_of({0.002, 0.0});
   EXPECT_EQ(outcome.grips, 0u);
   EXPECT_LT(outcome.off, 0.002);
+}
+
+/// Thumb and three fingers that close round a bar, with their middle phalanges, which slip along its edges.
+Hand closing_round_bar(double gap) {
+  constexpr double kRadius = 0.008, kPad = 0.0125;
+  Hand hand = testing::empty_hand();
+  const auto add = [&](int finger, double side, double z) {
+    const double x = side * (gap + kRadius);
+    const Vector3 joint(x, kPad, z);
+    testing::add_finger(hand, capsule_index(finger, 3), joint, Vector3(x, -kPad, z), kRadius);
+    testing::add_finger(hand, capsule_index(finger, 2), Vector3(x + side * 0.008, 0.036, z), joint, kRadius);
+  };
+  add(0, -1.0, 0.0);
+  for (int finger = 1; finger <= 3; ++finger) add(finger, 1.0, 0.02 * (finger - 2));
+  return hand;
+}
+
+// 4 mm deep on both sides, without noise.
+TEST(GraspAssist, adds_nothing_to_a_pinch_of_a_thin_body_of_which_a_middle_phalanx_alone_slips) {
+  for (const double thickness : {0.01, 0.016, 0.02}) {
+    for (const double rate : {60.0, 120.0, 240.0}) {
+      Body bar = testing::stiff_box(Vector3(thickness, thickness, 0.12), 0.05);
+      Simulation simulation(testing::scene_of(bar), Configuration());
+      std::size_t assists = 0;
+      testing::play(
+          simulation, 0.0, 1.0, rate,
+          [&](double t) {
+            return closing_round_bar(0.5 * thickness + 0.012 - 0.016 * testing::smooth(t - 0.1, 0.15));
+          },
+          [&](const Simulation& s) { assists += s.result().assists.size(); });
+      EXPECT_EQ(assists, 0u) << thickness << " m, " << rate << " Hz";
+    }
+  }
 }
 
 TEST(GraspAssist, lets_go_without_a_kick_as_the_hand_opens) {

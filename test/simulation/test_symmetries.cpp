@@ -57,8 +57,8 @@ struct Story {
   bool table = false;
   double until = 100.0;  // [s]
   // Rounding alone differs. The velocity at a frame, extrapolated from five poses, multiplies it by some
-  // hundred: 3e-10 m as measured, in catch_ball.
-  double tolerance = 3e-9;  // [m]
+  // hundred: 9e-9 m as measured, in catch_ball, whose ball slips as it is caught.
+  double tolerance = 3e-8;  // [m]
 };
 
 /// What became of the object, frame by frame, there or elsewhere.
