@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """A /clock that leaps, for a message or longer, to where ros::Duration ends too, ends no node; the scripted hand and the
-simulation go on after it."""
+simulation go on after it, and so does the bag of a session."""
+import glob
 import os
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -97,6 +99,19 @@ class LeapingClockTest(unittest.TestCase):
                            "rendered hands after the clock was at %s for %s s" % (elsewhere, seconds))
         for subscriber in subscribers:
             subscriber.unregister()
+
+    def test_a_session_is_recorded_again_after_a_clock_of_zero(self):
+        with tempfile.TemporaryDirectory() as parent:
+            folder = os.path.join(parent, "session")
+
+            def bags():
+                return [bag for bag in glob.glob(folder + "/hands_*.bag*") if os.path.getsize(bag) > 100000]
+
+            with Launch("training.launch", "participant:=P01", "hands:=demo", "rviz:=false", "folder:=" + folder) as launch:
+                wait_until(lambda: len(bags()) == 1, "the bag of the session")
+                self.clock.leap = 0.0  # rosbag ends with an error: it inserts no message at this time
+                wait_until(lambda: len(bags()) == 2, "a bag after the clock was at 0")
+                self.assertFalse(launch.has_ended(), "the launch has ended")
 
 
 if __name__ == "__main__":
