@@ -30,9 +30,10 @@ DEMO = ["demo.launch", "rviz:=false"]
 SCENES = {
     "grasp": Scene("grasp, carry, let go", DEMO + ["motion:=grasp_cube"], "interaction", 0.0),
     "catch": Scene("catch", DEMO + ["motion:=catch_ball"], "catch", 0.0),
-    # From the palm's side. The ring of an impact lasts 0.15 s: one picture at full speed.
-    "slap": Scene("slap, fifteen times slower", DEMO + ["motion:=slap"], "interaction", -1.12, 1.0 / 15.0,
-                  {"Yaw": 3.5, "Pitch": 0.2, "Distance": 0.48}),
+    # Obliquely from the palm's side, so wide that the cube's flight is in view. The ring of an impact lasts 0.15 s: one picture
+    # at full speed.
+    "slap": Scene("slap, twenty times slower", DEMO + ["motion:=slap"], "interaction", -1.18, 1.0 / 20.0,
+                  {"Yaw": 4.0, "Pitch": 0.25, "Distance": 0.62, "Focal Point": {"X": -0.12, "Y": 0.02, "Z": 0.24}}),
     "bar": Scene("pinch a slender bar", DEMO + ["motion:=pinch_long"], "interaction", 0.0),
     "training": Scene("training", ["training.launch", "rviz:=false", "record:=false", "participant:=P01", "hands:=operator"],
                       "training", 3.0),
@@ -51,13 +52,18 @@ def parse(arguments):
     parser.add_argument("--rate", type=float, default=10.0)
     parser.add_argument("--size", default="960x600")
     parser.add_argument("--quality", type=float, default=75.0)
+    parser.add_argument("--still", type=float, help="seconds from the scene's begin: this one picture, a .png")
     parser.add_argument("--print-screen", action="store_true", help="the size of the screen that is needed, and no more")
     options = parser.parse_args(arguments)
     for scene in options.scenes:
         if scene not in SCENES:
             parser.error("unknown scene '%s'; allowed: %s" % (scene, ", ".join(SCENES)))
     options.scenes = options.scenes or list(SCENES)
-    if os.path.splitext(options.output)[1] not in WRITERS:
+    if options.still is not None:
+        if len(options.scenes) != 1 or not options.output.endswith(".png"):
+            parser.error("--still takes one scene and an output that ends in .png")
+        options.seconds = options.still
+    elif os.path.splitext(options.output)[1] not in WRITERS:
         parser.error("'%s' is no film; allowed: a file that ends in %s" % (options.output, " or ".join(WRITERS)))
     return options
 
@@ -166,6 +172,13 @@ def up_to_first_hand(shown):
     return shown[:first + len(TOPICS)]
 
 
+def times_of(options):
+    """Seconds of the pictures, from the scene's begin."""
+    if options.still is not None:
+        return [options.still]
+    return [picture / options.rate for picture in range(int(options.seconds * options.rate))]
+
+
 def draw(scene, begin, shown, options, folder, focus=None):
     """Yields the files of the pictures."""
     files = []
@@ -178,8 +191,8 @@ def draw(scene, begin, shown, options, folder, focus=None):
             wait_for_rviz(stage, up_to_first_hand(shown), folder, rviz)
             stage.clear()
             since = 0.0
-            for picture in range(int(options.seconds * options.rate)):
-                until = begin + scene.speed * picture / options.rate
+            for picture, seconds in enumerate(times_of(options)):
+                until = begin + scene.speed * seconds
                 stage.show([entry for entry in shown if since < entry[0] <= until])
                 stage.tick(picture, eye, aspect)
                 since = until
@@ -196,8 +209,9 @@ def finish(picture, caption, size, file):
     """Halves the size, adds the caption, and removes the mark."""
     width, height = (2 * int(number) for number in size.split("x"))
     mark = "rectangle %d,%d %d,%d" % (0.983 * width, 0.978 * height, width, height)
-    subprocess.run(["convert", picture, "-fill", BACKGROUND, "-draw", mark, "-resize", size, "-font", FONT, "-pointsize", "13", "-fill", "#d0d4da", "-gravity",
-                    "southwest", "-annotate", "+12+10", caption, "-strip", file], check=True)
+    subprocess.run(["convert", picture, "-fill", BACKGROUND, "-draw", mark, "-resize", size, "-font", FONT, "-pointsize", "13",
+                    "-fill", "#d0d4da", "-undercolor", BACKGROUND + "c0", "-gravity", "southwest",
+                    "-annotate", "+12+10", caption, "-strip", file], check=True)
 
 
 def main():
@@ -230,6 +244,9 @@ def film_of_scenes(options, parent):
 
 
 def write(files, options):
+    if options.still is not None:
+        shutil.copy(files[0], options.output)
+        return
     if options.output.endswith(".mp4"):
         command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "concat", "-safe", "0", "-r", "%g" % options.rate, "-i", "-",
                    "-pix_fmt", "yuv420p", "-crf", "20", options.output]
@@ -244,8 +261,8 @@ def make(options):
     if options.print_screen:
         print("x".join(str(2 * int(number)) for number in options.size.split("x")))
         return 0
-    writer, package = WRITERS[os.path.splitext(options.output)[1]]
-    if not shutil.which(writer):
+    writer, package = WRITERS.get(os.path.splitext(options.output)[1], (None, None))
+    if writer and not shutil.which(writer):
         raise RuntimeError("the program '%s' is missing; allowed: install the package '%s'" % (writer, package))
     os.makedirs(os.path.dirname(options.output) or ".", exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:

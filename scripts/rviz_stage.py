@@ -37,16 +37,21 @@ def missing_tools():
     return sorted({package for program, package in PROGRAMS.items() if not shutil.which(program)})
 
 
-def picture_view(name, width, height):
-    """A configuration of rviz/ for a window of this size without panels."""
+def shipped_view(name):
+    """A configuration of rviz/."""
     for folder in (os.path.join(HERE, "..", "rviz"), os.path.join(HERE, "..", "..", "share", "mr_hand_interaction", "rviz")):
         if os.path.exists(os.path.join(folder, name + ".rviz")):
             with open(os.path.join(folder, name + ".rviz"), encoding="utf-8") as source:
-                config = yaml.safe_load(source)
-            config["Panels"] = []
-            config["Window Geometry"].update({"Width": width, "Height": height, "Hide Left Dock": True, "Hide Right Dock": True})
-            return config
+                return yaml.safe_load(source)
     raise RuntimeError("rviz/" + name + ".rviz is not found; allowed: a built or installed package")
+
+
+def picture_view(name, width, height):
+    """A configuration of rviz/ for a window of this size without panels."""
+    config = shipped_view(name)
+    config["Panels"] = []
+    config["Window Geometry"].update({"Width": width, "Height": height, "Hide Left Dock": True, "Hide Right Dock": True})
+    return config
 
 
 def free_port():

@@ -26,6 +26,9 @@ VIEWS = {"front": (6.05, 0.5), "left": (3.9, 0.45), "right": (0.5, 0.6), "back":
 LAYERS = ("hand", "ghost", "objects", "fixtures", "contacts", "friction", "forces", "impacts", "shadows", "text", "Grid")
 STOPPED = 3.0  # s; a clock that stands still for so long belongs to a bag that is over
 FONT = os.path.join(rospkg.RosPack().get_path("rviz"), "ogre_media", "fonts", "liberation-sans", "LiberationSans-Regular.ttf")
+STILL_CROP = "890x556+388+75"  # the camera's panel of rviz/mr_view.rviz in a window of 1280x800, to the size of a picture
+STILL_REMAPS = ["/mr_view/image:=/camera/image_raw", "/mr_view/camera_info:=/camera/camera_info"]
+STILL_PERIOD = 3.0  # s between two pictures that must be equal: hands come after the room
 OFF_AT_FIRST = ("capsules", "newtons", "share")
 
 
@@ -52,6 +55,7 @@ def parse(arguments):
     parser = argparse.ArgumentParser(prog="screenshot")
     parser.add_argument("--motion", required=True)
     parser.add_argument("--bag", default="", help="is played in place of the motion")
+    parser.add_argument("--still", default="", help="a camera's picture that it draws into")
     parser.add_argument("--moment", choices=MOMENTS, default="done")
     parser.add_argument("--time", type=lambda text: float(text) if text else None)
     parser.add_argument("--view", type=view, default=VIEWS["front"])
@@ -102,7 +106,11 @@ def middle(demo):
 
 
 def write_config(options, focus, file):
-    from rviz_stage import picture_view  # which imports this
+    from rviz_stage import picture_view, shipped_view  # which imports this
+    if options.still:
+        yaml.safe_dump(shipped_view("mr_view"), file)
+        file.flush()
+        return
     config = picture_view("interaction", *(2 * int(number) for number in options.size.split("x")))
     manager = config["Visualization Manager"]
     manager["Views"]["Current"].update({"Yaw": options.view[0], "Pitch": options.view[1], "Distance": options.distance,
@@ -127,15 +135,21 @@ def has_scene(file):
     return covers_screen(file) and colours_of(file) >= COLOURS
 
 
-def drawn_picture(rviz, size, output, complete, deadline):
+def grab_picture(file, still):
+    grab(file)
+    if still:
+        subprocess.run(["mogrify", "-crop", STILL_CROP, "+repage", file], check=True)
+
+
+def drawn_picture(rviz, size, output, complete, deadline, still=False):
     """True if rviz has drawn a complete picture and no longer changes it. The picture, at half the screen's size, is then in
     the file."""
     with tempfile.TemporaryDirectory() as folder:
         before, now = os.path.join(folder, "before.png"), os.path.join(folder, "now.png")
-        grab(before)
+        grab_picture(before, still)
         while time.monotonic() < deadline and rviz.poll() is None:
-            time.sleep(0.5)
-            grab(now)
+            time.sleep(STILL_PERIOD if still else 0.5)
+            grab_picture(now, still)
             same = subprocess.run(["compare", "-metric", "AE", before, now, "null:"], stderr=subprocess.DEVNULL,
                                   check=False).returncode == 0
             if same and complete(now):
@@ -151,10 +165,11 @@ def draw(options, focus, deadline, complete=has_scene):
     with tempfile.NamedTemporaryFile("w", suffix=".rviz", encoding="utf-8") as config:
         write_config(options, focus, config)
         while time.monotonic() < deadline:
-            rviz = subprocess.Popen(["rosrun", "rviz", "rviz", "--fullscreen", "-d", config.name],
+            window = STILL_REMAPS if options.still else ["--fullscreen"]
+            rviz = subprocess.Popen(["rosrun", "rviz", "rviz", "-d", config.name] + window,
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             try:
-                if drawn_picture(rviz, options.size, options.output, complete, deadline):
+                if drawn_picture(rviz, options.size, options.output, complete, deadline, bool(options.still)):
                     return True
             finally:
                 rviz.terminate()

@@ -92,6 +92,16 @@ HandJoints read_hand(const CsvColumns& row, std::uint32_t id) {
   return hand;
 }
 
+/// Throws if the first line of a file is in UTF-16, as spreadsheets save "Unicode text".
+void require_no_utf16(const std::string& file, const std::string& line) {
+  const auto zero_at = [&line](std::size_t place) { return place < line.size() && line[place] == '\0'; };
+  const bool little = line.compare(0, 2, "\xFF\xFE") == 0 || (zero_at(1) && zero_at(3));
+  const bool big = line.compare(0, 2, "\xFE\xFF") == 0 || (zero_at(0) && zero_at(2));
+  if (little || big)
+    throw RecordingError(file + ": is in UTF-16; allowed: UTF-8, such as 'iconv -f UTF-16" +
+                         (little ? "LE" : "BE") + " -t UTF-8' makes of it");
+}
+
 }  // namespace
 
 CsvColumns::CsvColumns(std::string file, const std::string& header)
@@ -116,7 +126,7 @@ std::optional<double> CsvColumns::number(const std::string& column) const {
     if (names_[i] != column) continue;
     if (cells_[i].empty() || cells_[i] == "NA") return std::nullopt;  // R's word for a missing value
     const auto value = text::to_number(cells_[i]);
-    if (!value) fail(column, "'" + cells_[i] + "' is not a number");
+    if (!value) fail(column, text::quoted(cells_[i], 40) + " is not a number");
     return value;
   }
   return std::nullopt;
@@ -149,6 +159,7 @@ std::vector<JointsFrame> read_recording_csv(const std::string& file) try {
   if (!lines.next(line)) throw RecordingError(file + ": is empty; allowed: a header and frames");
   if (line.compare(0, 2, "\x1F\x8B") == 0)
     throw RecordingError(file + ": is compressed by gzip; allowed: the table that 'gunzip' makes of it");
+  require_no_utf16(file, line);
   CsvColumns row(file, line);
   std::vector<JointsFrame> frames;
   FrameKey key;

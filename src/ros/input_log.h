@@ -45,6 +45,13 @@ class StampClock {
   /// Leaves out time that was too long to simulate, like a pause.
   void leave_out(Nanoseconds time) { pauses_ += time; }
 
+  /// Shortens the pauses if they move a frame's stamp out of the range of simulation time, as after a leap of
+  /// ROS's clock. The frame is then so long before `reached`, the simulated time, that its stream restarts.
+  void limit_pauses(Nanoseconds stamp, Nanoseconds reached) {
+    if (to_simulation(stamp) < -StampCheck::kLatest)
+      pauses_ = std::max<Nanoseconds>(0, stamp - (reached - kBeforeRestart));
+  }
+
   bool paused() const { return paused_; }
   /// Check of frames that continue from the last accepted one.
   const StampCheck& check() const { return last_; }
@@ -53,6 +60,8 @@ class StampClock {
   Nanoseconds to_stamp(Nanoseconds simulation_time) const { return simulation_time + pauses_; }
 
  private:
+  static constexpr Nanoseconds kBeforeRestart = 4 * StampCheck::kBack;  // the frames of a restart fit in
+
   StampCheck last_;  // of the last frame
   ros::Time arrival_;
   bool paused_ = false;

@@ -9,8 +9,10 @@
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cinttypes>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -34,6 +36,7 @@ namespace mrhi {
 namespace {
 
 constexpr int kHandQueue = 10;
+constexpr Nanoseconds kNoTime = std::numeric_limits<Nanoseconds>::min();  // before all others
 constexpr Nanoseconds kSlack = 100'000'000;  // delay after which a frame may still arrive
 const ros::WallDuration kIdlePeriod(1.0 / 30);
 
@@ -144,11 +147,13 @@ struct InteractionServer::Impl {
     if (without_slash(frame_id) != without_slash(fixed_frame_))
       return diagnostics_.rejected("wrong frame",
                                    "'" + text::one_line(frame_id, 64) + "'; allowed: " + fixed_frame_);
+    if (stamp > StampCheck::kLatest) return reject(Rejection::no_stamp, stamp);
+    const SimulationState& state = live_.simulation().state();
+    clock_.limit_pauses(stamp, state.time);
     frame.stamp = clock_.to_simulation(stamp);
     Nanoseconds expected = clock_.to_simulation(clock_.stamp(ros::Time::now()));
-    const SimulationState& state = live_.simulation().state();
     if (StampCheck(state.stamps).check(frame.stamp, state.time, expected) == StampVerdict::follows) {
-      const Nanoseconds left_out = leave_out_before(frame.stamp, 0);
+      const Nanoseconds left_out = leave_out_before(frame.stamp, kNoTime);
       frame.stamp -= left_out;
       expected -= left_out;
     }
@@ -160,7 +165,7 @@ struct InteractionServer::Impl {
     });
     if (rejection != Rejection::none) {
       log_.frame(std::move(frame), frame_id, expected);
-      return diagnostics_.rejected(to_string(rejection), std::to_string(to_seconds(stamp)) + " s");
+      return reject(rejection, stamp);
     }
     results_.publish_response(live_.simulation().report());
     const FrameResult& result = live_.simulation().end();
@@ -174,6 +179,10 @@ struct InteractionServer::Impl {
     diagnostics_.taken(to_seconds(from_ros_time(now) - stamp));
     clock_.take(stamp, now);
     taken_ = ros::SteadyTime::now();
+  }
+
+  void reject(Rejection rejection, Nanoseconds stamp) {
+    diagnostics_.rejected(to_string(rejection), std::to_string(to_seconds(stamp)) + " s");
   }
 
   /// Notes what the simulation of `work` costs.
@@ -202,12 +211,12 @@ struct InteractionServer::Impl {
     return left_out;
   }
 
-  /// Time up to which hands of the last frame stay where they are, once no frame has come for that long. In a
-  /// slow scene the last frame's stamp is old while others wait.
+  /// Time up to which hands of the last frame stay where they are, once no frame has come for that long;
+  /// kNoTime until then. In a slow scene the last frame's stamp is old while others wait.
   Nanoseconds end_of_hold() const {
     const Simulation& simulation = live_.simulation();
     const double hold = simulation.configuration().tracking.hold_time;
-    if ((ros::SteadyTime::now() - taken_).toSec() < hold) return 0;
+    if ((ros::SteadyTime::now() - taken_).toSec() < hold) return kNoTime;
     return simulation.state().last_frame + to_nanoseconds(hold);
   }
 

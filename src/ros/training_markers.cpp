@@ -23,7 +23,7 @@ constexpr std::size_t kMaxLetters = 44;  // letters per line
 
 /// 0.3 m in front of the camera of rviz/training.rviz, at the upper edge of its view: the hands' workspace is
 /// behind it.
-const Vector3 kHeadingPlace(0.0, -0.136, 0.487), kTimerPlace(0.10, -0.155, 0.43);
+const Vector3 kHeadingPlace(0.0, -0.193, 0.545), kTimerPlace(0.10, -0.212, 0.488);
 const Vector3 kDown(0.0, -0.2955, -0.9553);  // in that view
 
 /// Of a target.

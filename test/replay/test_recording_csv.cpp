@@ -122,6 +122,26 @@ TEST(RecordingCsv, ErrorsNameLineAndColumn) {
   EXPECT_THROW(read_recording_csv("/dev/zero"), RecordingError);
 }
 
+TEST(RecordingCsv, AFileInUtf16IsNamedWithWhatConvertsIt) {
+  for (const bool little : {true, false}) {
+    for (const bool marked : {true, false}) {
+      std::string text = !marked ? "" : little ? "\xFF\xFE" : "\xFE\xFF";
+      for (const char c : std::string(kHeader) + "0,0,1,4,,,,,,,\n")
+        text += little ? std::string{c, '\0'} : std::string{'\0', c};
+      EXPECT_EQ(error_of(text), std::string(": is in UTF-16; allowed: UTF-8, such as 'iconv -f UTF-16") +
+                                    (little ? "LE" : "BE") + " -t UTF-8' makes of it");
+    }
+  }
+}
+
+TEST(RecordingCsv, AByteOfZeroIsShownAndDoesNotCutTheMessage) {
+  const std::string header = kHeader, zero(1, '\0');
+  EXPECT_EQ(error_of(header + "0,1" + zero + "5,1,4,,,,,,,\n"), ":2: time_s: '1?5' is not a number");
+  EXPECT_EQ(error_of("time" + zero + "_s,hand_id\n0,1\n"),
+            ":1: has no column 'time_s'; allowed: a header with time_s, hand_id, is_left and joints; it "
+            "begins with 'time?_s'");
+}
+
 TEST(RecordingCsv, NumbersAreReadAlikeInEveryLocale) {
   const char* comma_locale = nullptr;
   for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "nl_NL.UTF-8"})

@@ -50,6 +50,34 @@ TEST(StampClock, the_simulation_does_not_see_pauses) {
   EXPECT_EQ(clock.to_simulation(132 * kSecond), 102 * kSecond);
 }
 
+TEST(StampClock, after_a_leap_of_ros_time_a_stream_is_as_far_back_as_one_that_restarts) {
+  for (const Nanoseconds leap : {2'999'000'000 * kSecond, 4'294'966'295 * kSecond}) {
+    StampClock clock;
+    clock.take(1000 * kSecond, ros::Time(1000, 0));
+    clock.leave_out(leap);  // nobody can simulate it
+    Nanoseconds reached = 1001 * kSecond;
+    StampCheck check;
+    ASSERT_EQ(check.check(1000 * kSecond), StampVerdict::follows);
+    StampVerdict verdict = StampVerdict::follows;
+    for (int frame = 0; frame < 3; ++frame) {
+      const Nanoseconds stamp =
+          1000 * kSecond + frame * StampCheck::kBack;  // the slowest stream that restarts
+      clock.limit_pauses(stamp, reached);
+      EXPECT_EQ(clock.to_stamp(clock.to_simulation(stamp)), stamp);
+      verdict = check.check(clock.to_simulation(stamp), reached, {});
+    }
+    EXPECT_EQ(verdict, StampVerdict::restart);
+  }
+}
+
+TEST(StampClock, a_pause_that_leaves_stamps_in_range_stays) {
+  StampClock clock;
+  clock.take(1000 * kSecond, ros::Time(1000, 0));
+  clock.leave_out(2'000'000'000 * kSecond);
+  clock.limit_pauses(1001 * kSecond, 1000 * kSecond);
+  EXPECT_EQ(clock.to_simulation(2'000'001'000 * kSecond), 1000 * kSecond);
+}
+
 TEST(ClockLeaps, one_of_another_time_for_a_moment_is_not_followed) {
   constexpr Nanoseconds kLook = 33'000'000, kFar = 3'000'000'000'000;
   ClockLeaps leaps;

@@ -102,6 +102,23 @@ TEST_F(TrainingMarkers, what_is_to_be_read_is_large_in_the_picture_and_before_wh
   }
 }
 
+TEST_F(TrainingMarkers, a_hand_at_a_place_and_its_sleeve_are_below_what_is_to_be_read) {
+  const Eye eye("rviz/training.rviz");
+  const Vector3 sleeve_end(0.0, 0.0, 0.15);  // from what is held by a hand above it [m]
+  status_.phase = TrainingStatus::RUNNING;
+  status_.instruction = instruction(session_->task(), 2, "flat_cuboid");
+  for (const std::string layer : {"instructions", "result"}) {
+    for (const Marker& text : shown(layer)) {
+      const Vector3 place = from_message(text.pose.position);
+      const double lower_edge = eye.y(place) - 0.5 * text.scale.z / eye.depth(place) / eye.half_height;
+      for (const Goal& goal : session_->task().goals) {
+        if (goal.stage != TrainingStage::maintenance) continue;
+        EXPECT_LT(eye.y(goal.position + sleeve_end), lower_edge) << text.text;
+      }
+    }
+  }
+}
+
 TEST_F(TrainingMarkers, the_timer_is_clear_of_places_and_of_other_text) {
   const Eye eye("rviz/training.rviz");
   test::Feeder hand(session_->task());
