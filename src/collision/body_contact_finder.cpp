@@ -54,13 +54,15 @@ struct ShapePair {
   const PlacedShape& placed_b;
   const ManifoldShape& shape_a;
   const ManifoldShape& shape_b;
+  SearchBudget& budget;
 
   Manifold at(double time, double margin) const {
-    return body_manifold(shape_a, a.at(time) * placed_a.pose, shape_b, b.at(time) * placed_b.pose, margin);
+    return body_manifold(shape_a, a.at(time) * placed_a.pose, shape_b, b.at(time) * placed_b.pose, margin,
+                         kAnyBreadth, &budget);
   }
   Manifold now(double margin, double least_breadth) const {
     return body_manifold(shape_a, a.pose * placed_a.pose, shape_b, b.pose * placed_b.pose, margin,
-                         least_breadth);
+                         least_breadth, &budget);
   }
 };
 
@@ -225,6 +227,7 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
                              const std::vector<char>& asleep, double step, double driven,
                              std::vector<BodyContact>& contacts) {
   found_.clear();
+  work_ = 0.0;
   followed_ = followed_gap(neighbours, bodies, asleep, step, driven);
   reached_ = 0;
   reaches_.resize(bodies.size());
@@ -307,9 +310,11 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
         distance_lower_bound(b.pose.position, geometry_.shapes[ia][i], a.body.shapes[i].pose, a.pose);
     if (away > within) continue;
     for (std::size_t j = 0; j < b.body.shapes.size(); ++j) {
+      SearchBudget budget = SearchBudget::after(work_);
       const ShapePair pair{
-          a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j]};
+          a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j], budget};
       auto touch = find_manifold(pair, step, followed_, margin);
+      work_ += budget.spent;
       if (!touch) continue;
       sort_points(touch->manifold);
       const Common common = common_of(pair, *touch);

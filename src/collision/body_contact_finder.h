@@ -22,6 +22,9 @@ class BodyContactFinder {
   void find(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
             const std::vector<char>& asleep, double step, double driven, std::vector<BodyContact>& contacts);
 
+  /// Work of the last find(), in searches of a mesh (SearchBudget).
+  double work() const { return work_; }
+
  private:
   struct Reach {
     Vector3 centre, half;              // of a box [m]
@@ -37,6 +40,7 @@ class BodyContactFinder {
   const Scene& scene_;
   const SceneGeometry& geometry_;
   const Vector3 gravity_;
+  double work_ = 0.0;                          // so far in this step, in searches
   double followed_ = 0.0;                      // gap from which contacts are followed in this step [m]
   std::vector<std::optional<Reach>> reaches_;  // by body, of those with an awake neighbour
   std::vector<BodyContact> found_;

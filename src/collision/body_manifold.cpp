@@ -78,18 +78,19 @@ ManifoldShape::ManifoldShape(const Shape& placed, const MeshCollider* collider)
 }
 
 Manifold body_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
-                       double margin, double least_breadth) {
+                       double margin, double least_breadth, SearchBudget* budget) {
   const double reach = a.bounding_radius + b.bounding_radius + margin;
   if ((pose_a.position - pose_b.position).squaredNorm() > reach * reach) return {};
   if (!comes_first(a, b)) {
-    Manifold manifold = body_manifold(b, pose_b, a, pose_a, margin, least_breadth);
+    Manifold manifold = body_manifold(b, pose_b, a, pose_a, margin, least_breadth, budget);
     manifold.normal = -manifold.normal;
     for (Vector3& normal : manifold.other_normals) normal = -normal;
     return manifold;
   }
   if (a.core) return core_manifold(*a.core, pose_a, b, pose_b, margin);
   if (a.prism && b.prism) return prism_manifold(a, pose_a, b, pose_b, margin, least_breadth);
-  return mesh_manifold(a, pose_a, b, pose_b, margin);
+  SearchBudget own;
+  return mesh_manifold(a, pose_a, b, pose_b, margin, budget != nullptr ? *budget : own);
 }
 
 std::optional<ClosestFeatures> closest_on(const ManifoldShape& shape, const Capsule& capsule, double margin) {

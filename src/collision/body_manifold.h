@@ -71,6 +71,26 @@ struct ManifoldShape {
 
 constexpr double kAnyBreadth = -1e300;  ///< [m]
 
+/// Work that manifolds of meshes may take, in ordinary searches of a mesh (1 to 2 us each). A pair that would
+/// exceed it has fewer contact points, spread over what was found and a sample of its edges.
+struct SearchBudget {
+  /// Of a pair, whose sweep through a step is included, and of all pairs of a step, samples not included.
+  static constexpr double kPair = 2500.0, kStep = 3000.0;
+  /// Of a mesh's sample, and once the step's budget is exhausted.
+  static constexpr double kSample = 300.0, kLeastSample = 30.0;
+
+  double left = kPair;
+  double sample = kSample;
+  double spent = 0.0;  // samples included
+
+  void spend(double work) { left -= work, spent += work; }
+  /// What a pair may spend if others have spent so much in this step.
+  static SearchBudget after(double spent) {
+    const double left = kStep - spent;
+    return {left < kPair ? left : kPair, left > 0.0 ? kSample : kLeastSample};
+  }
+};
+
 /// Manifold of the shapes, placed in world, that overlap or are within `margin` >= 0 [m]: at most 4 points,
 /// the deepest among them. Deterministic; no memory, no allocation. Two prisms that overlap by less than
 /// `least_breadth` in two directions across each other, like diagonal neighbours of a stack, do not touch.
@@ -82,7 +102,7 @@ constexpr double kAnyBreadth = -1e300;  ///< [m]
 /// straight side. A rim cut deeper than it is curved there may be taken 1 % too deep. Mesh: corners and edges
 /// of each are measured in the other; mesh_manifold() says how well.
 Manifold body_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
-                       double margin, double least_breadth = kAnyBreadth);
+                       double margin, double least_breadth = kAnyBreadth, SearchBudget* budget = nullptr);
 
 /// Closest features of a capsule in the shape's frame, if nearer than `margin`: closed form or mesh.
 std::optional<ClosestFeatures> closest_on(const ManifoldShape& shape, const Capsule& capsule, double margin);
@@ -109,8 +129,9 @@ Manifold prism_manifold(const ManifoldShape& a, const Pose& pose_a, const Manifo
 /// Where an edge lies along a face, its middle and its corners stand for it: a mesh that overhangs a table
 /// touches with the corners that are on it and the middle of the table's edge. A cylinder touches with eight
 /// points of its rims and the side line that faces the mesh. Names are numbers of corners modulo 100 and of
-/// edges modulo 28.
+/// edges modulo 28. Beyond the budget, contacts are chosen from a subset: those found until then, thinned
+/// evenly, and those of a sample of edges.
 Manifold mesh_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
-                       double margin);
+                       double margin, SearchBudget& budget);
 
 }  // namespace mrhi

@@ -128,6 +128,7 @@ struct MeshCollider::Impl {
   explicit Impl(const TriangleMesh& mesh) : shape(mesh), parts(parts_of(mesh)), guesses(shape.surface) {
     for (const MeshShape& part : parts)
       deepest = std::max(deepest, 0.5 * part.surface.bounds().sizes().minCoeff());
+    search_cost = mean_search_cost();
   }
 
   MeshNearest nearest(const MeshShape& of, const Segment& segment, double range) const {
@@ -154,10 +155,12 @@ struct MeshCollider::Impl {
   void leave_by_end(const MeshShape& of, const Segment& segment, double s,
                     std::optional<ClosestFeatures>& best) const;
   std::optional<ClosestFeatures> leave_parts(const Segment& segment) const;
+  double mean_search_cost() const;
 
   MeshShape shape;
   std::vector<MeshShape> parts;
   double deepest = 0.0;  // nothing within a part is farther from its surface [m]
+  double search_cost = 1.0;
   mutable GuessMemory guesses;
   mutable NearMemory memory;
 };
@@ -190,6 +193,23 @@ std::optional<ClosestFeatures> MeshCollider::Impl::leave_parts(const Segment& se
   }
   if (best) best->part = -1;
   return best;
+}
+
+/// Searches for copies of some of its edges, slightly moved, without memory: what decides how long a search
+/// takes, above all how long and thin the faces are, decides it there too.
+double MeshCollider::Impl::mean_search_cost() const {
+  constexpr int kSamples = 32;
+  constexpr double kMove = 0.01, kOrdinaryVisits = 50.0;  // fraction of the mesh's size, and per search
+  const auto& edges = shape.surface.edges();
+  if (edges.empty()) return 1.0;
+  const Vector3 move = kMove * shape.surface.bounds().sizes().maxCoeff() * Vector3(0.7, 0.5, 0.4);
+  double visits = 0.0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const MeshSurface::Edge& edge = edges[i * edges.size() / kSamples];
+    const Segment segment(Capsule{edge.start + move, edge.start + edge.along + move, 0.0});
+    visits += MeshNearest(shape.surface, shape.tree, segment, kUnlimited, -1).visits();
+  }
+  return std::max(1.0, visits / (kSamples * kOrdinaryVisits));
 }
 
 /// In a hollow solid the nearest surface of an end may be an edge or a corner that points inwards. The end's
@@ -234,6 +254,18 @@ std::shared_ptr<const MeshCollider> shared_collider(const std::shared_ptr<const 
 
 const MeshShape& MeshCollider::shape() const {
   return impl_->shape;
+}
+
+double MeshCollider::search_cost() const {
+  return impl_->search_cost;
+}
+
+double MeshCollider::deep_search_cost(double depth) const {
+  constexpr double kOfShallow = 10.0, kPartsPerSearch = 600.0;
+  const MeshSurface& surface = impl_->shape.surface;
+  const double parts = static_cast<double>(surface.faces().size() + surface.edges().size());
+  const double centred = std::min(1.0, 2.0 * depth / std::max(1e-9, surface.bounds().sizes().minCoeff()));
+  return kOfShallow * impl_->search_cost + parts / kPartsPerSearch * centred * centred;
 }
 
 /// From deep inside the surface may be any way off. A segment whose middle is out of the bounds has at most

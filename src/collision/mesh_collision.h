@@ -36,6 +36,13 @@ class MeshCollider {
 
   const MeshShape& shape() const;
 
+  /// Mean work of a search near the surface, over that of an ordinary mesh; >= 1. Large where long thin faces
+  /// lie side by side.
+  double search_cost() const;
+  /// The same where the surface coincides with the place, or this far below it [m]: next to the middle of a
+  /// round solid, all parts are about as near.
+  double deep_search_cost(double depth) const;
+
  private:
   struct Impl;
   std::unique_ptr<const Impl> impl_;

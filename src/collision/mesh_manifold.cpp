@@ -17,11 +17,12 @@ constexpr int kCornerNames = 100, kEdgeNames = 28, kSecond = 128;
 /// Margin at an edge's ends, which belong to the corners there: else one point would have two names.
 constexpr double kAtEnd = 1e-6;
 constexpr std::size_t kDirections = 8;
-/// A search from deeper than kDeep, or on the surface itself, costs about 30 times as much as others [m].
-/// Each visit of a shape makes at most kMaxDeepSearches, so that fine meshes deep inside each other do not
-/// delay a step.
+/// A search from deeper than kDeep, or on the surface itself, costs more than others [m].
 constexpr double kDeep = 0.002, kCoincides = 1e-9;
-constexpr int kMaxDeepSearches = 300;
+/// Work of a search in a shape other than a mesh: closed forms.
+constexpr double kClosedFormWork = 0.1;
+/// Edges of each mesh that stand for all beyond the budget. Each is measured with one of its corners.
+constexpr std::size_t kSampledEdges = 24;
 
 /// A corner (both ends the same) or an edge of a shape, in world.
 struct Probe {
@@ -51,10 +52,17 @@ struct Probing {
   const Pose& other_pose;
   bool other_is_b;
   double margin;
-  mutable int deep_left = kMaxDeepSearches;  // of the visit
+  SearchBudget& budget;
 
-  void note(const ClosestFeatures& features) const {
-    if (features.distance < -kDeep || std::abs(features.distance) < kCoincides) --deep_left;
+  /// closest_on() the other shape, charged to the budget.
+  std::optional<ClosestFeatures> search(const Capsule& local, double range) const {
+    const auto features = closest_on(other, local, range);
+    const bool is_deep =
+        features && (features->distance < -kDeep || std::abs(features->distance) < kCoincides);
+    budget.spend(other.mesh == nullptr ? kClosedFormWork
+                 : is_deep             ? other.mesh->deep_search_cost(std::max(0.0, -features->distance))
+                                       : other.mesh->search_cost());
+    return features;
   }
 
   std::optional<ProbeContact> find_contact(const Probe& probe) const {
@@ -62,9 +70,8 @@ struct Probing {
     const double reach = other.bounding_radius + margin + 0.5 * (probe.end - probe.start).norm();
     if ((middle - other_pose.position).squaredNorm() > reach * reach) return std::nullopt;
     const auto features =
-        closest_on(other, {other_pose.to_local(probe.start), other_pose.to_local(probe.end), 0.0}, margin);
+        search({other_pose.to_local(probe.start), other_pose.to_local(probe.end), 0.0}, margin);
     if (!features) return std::nullopt;
-    note(*features);
     // A part of the edge's length, not metres.
     const bool at_end = features->axis_parameter < kAtEnd || features->axis_parameter > 1.0 - kAtEnd;
     if (probe.start != probe.end && at_end) return std::nullopt;
@@ -82,8 +89,7 @@ struct Probing {
     const double apart = (centre - other_pose.position).norm() - other.bounding_radius - node.radius;
     if (apart > margin) return -1e300;
     const Vector3 local = other_pose.to_local(centre);
-    const auto features = closest_on(other, {local, local, 0.0}, margin + node.radius);
-    if (features) note(*features);
+    const auto features = search({local, local, 0.0}, margin + node.radius);
     return features ? node.radius - features->distance : -1e300;
   }
 };
@@ -165,27 +171,38 @@ struct Probes {
   }
 };
 
-/// Calls `see(contact)` for what of both shapes sticks out in the other, but for nodes of meshes that are not
-/// `wanted(probing, node)`.
+/// What of both shapes sticks out in the other.
 ///
 /// Visits of a tree are always in the same order, so that the first of equals is the same one at every call.
+/// Beyond the budget the contacts are a subset: those that the first visit found, thinned evenly, the deepest
+/// of them, and those of sampled edges.
 class ProbeContacts {
  public:
-  ProbeContacts(const Probing& of_a, const Probing& of_b) : both_{{of_a, of_b}} {
+  ProbeContacts(const Probing& of_a, const Probing& of_b) : both_{{of_a, of_b}}, budget_(of_a.budget) {
     const auto may_touch = [this](const Probing& probing, const MeshTree::Node& node) {
-      return count_ <= kRemembered && probing.max_depth(node) >= -probing.margin;
+      return found_ <= kRemembered && probing.max_depth(node) >= -probing.margin;
     };
-    measure(may_touch, [this](const ProbeContact& contact) {
-      if (count_ < kRemembered) remembered_[count_] = contact;
-      ++count_;
-    });
+    measure(may_touch, [this](const ProbeContact& contact) { remember(contact); });
+    count_ = found_;
+    if (is_exhausted()) use_subset();
   }
 
-  /// Few are measured once, many each time.
+  bool is_exhausted() const { return budget_.left <= 0.0; }
+  /// True if not all contacts count.
+  bool is_subset() const { return subset_; }
+  void use_subset() {
+    subset_ = true;
+    add_samples();
+    if (deepest_.depth > -1e300) kept_[kept_count_++] = deepest_;
+    count_ = kept_count_;
+  }
+
+  /// Calls `see(contact)` for all, but for nodes of meshes that are not `admits(probing, node)`. Few are
+  /// measured once, many each time.
   template <typename Admits, typename See>
   void each(const Admits& admits, const See& see) const {
-    if (count_ > kRemembered) return measure(admits, see);
-    for (std::size_t i = 0; i < count_; ++i) see(remembered_[i]);
+    if (!subset_ && count_ > kRemembered) return measure(admits, see);
+    for (std::size_t i = 0; i < count_; ++i) see(kept_[i]);
   }
   /// Returns the first of the deepest of those that `fits` accepts and that are deeper than `least`.
   /// The bound grows with what is found: nodes that cannot exceed it are left out.
@@ -208,17 +225,54 @@ class ProbeContacts {
   }
 
  private:
-  static constexpr std::size_t kRemembered = 320;
+  static constexpr std::size_t kRemembered = 320, kSamples = 4 * kSampledEdges;
 
+  /// Keeps all while they are few, later every 2^n-th.
+  void remember(const ProbeContact& contact) {
+    if (contact.depth > deepest_.depth) deepest_ = contact;
+    if (found_++ % stride_ != 0) return;
+    if (kept_count_ == kRemembered) {
+      for (std::size_t i = 0; 2 * i < kept_count_; ++i) kept_[i] = kept_[2 * i];
+      kept_count_ /= 2;
+      stride_ *= 2;
+    }
+    kept_[kept_count_++] = contact;
+  }
+  /// The i-th edge is at the fractional part of i times the golden ratio, so that the sample is even wherever
+  /// it ends.
+  void add_samples() {
+    constexpr double kGoldenRatio = 0.6180339887498949;
+    for (const Probing& probing : both_) {
+      if (probing.of.mesh == nullptr) continue;
+      const std::vector<MeshSurface::Edge>& edges = probing.of.mesh->shape().surface.edges();
+      const double limit = budget_.spent + budget_.sample;
+      for (std::size_t i = 0; i < kSampledEdges && !edges.empty() && budget_.spent < limit; ++i) {
+        const double part = std::fmod(kGoldenRatio * static_cast<double>(i), 1.0);
+        const auto index = static_cast<std::size_t>(part * static_cast<double>(edges.size()));
+        const MeshSurface::Edge& edge = edges[index];
+        const Vector3 start = probing.pose * edge.start,
+                      end = probing.pose * Vector3(edge.start + edge.along);
+        add_sample(probing, Probe::corner(start, edge.corners[0]));
+        add_sample(probing, Probe::edge(start, end, static_cast<int>(index)));
+      }
+    }
+  }
+  void add_sample(const Probing& probing, const Probe& probe) {
+    const auto contact = probing.find_contact(probe);
+    if (!contact) return;
+    if (contact->depth > deepest_.depth) deepest_ = *contact;
+    kept_[kept_count_++] = *contact;
+  }
+
+  /// Until the budget is exhausted.
   template <typename Admits, typename See>
   void measure(const Admits& admits, const See& see) const {
     for (const Probing& probing : both_) {
-      probing.deep_left = kMaxDeepSearches;
       const auto wanted_here = [&](const MeshTree::Node& node) {
-        return probing.deep_left > 0 && admits(probing, node);
+        return !is_exhausted() && admits(probing, node);
       };
       const auto try_out = [&](const Probe& probe) {
-        if (probing.deep_left <= 0) return;
+        if (is_exhausted()) return;
         if (const auto contact = probing.find_contact(probe)) see(*contact);
       };
       Probes<decltype(wanted_here), decltype(try_out)>{probing, wanted_here, try_out}.each();
@@ -226,8 +280,12 @@ class ProbeContacts {
   }
 
   std::array<Probing, 2> both_;
-  std::array<ProbeContact, kRemembered> remembered_;
-  std::size_t count_ = 0;
+  SearchBudget& budget_;
+  std::array<ProbeContact, kRemembered + kSamples + 1> kept_;
+  std::size_t kept_count_ = 0, count_ = 0;
+  std::size_t found_ = 0, stride_ = 1;
+  ProbeContact deepest_{Vector3::Zero(), Vector3::UnitZ(), -1e300, 0};
+  bool subset_ = false;
 };
 
 /// The contacts of the deepest one's region that are farthest in eight directions across its normal. The
@@ -328,12 +386,17 @@ Manifold chosen(const ProbeContacts& contacts, bool convex) {
 }  // namespace
 
 Manifold mesh_manifold(const ManifoldShape& a, const Pose& pose_a, const ManifoldShape& b, const Pose& pose_b,
-                       double margin) {
+                       double margin, SearchBudget& budget) {
   const auto is_convex = [](const ManifoldShape& shape) {
     return shape.mesh == nullptr || shape.mesh->shape().surface.convex();
   };
-  return chosen({{a, pose_a, b, pose_b, true, margin}, {b, pose_b, a, pose_a, false, margin}},
-                is_convex(a) && is_convex(b));
+  const bool convex = is_convex(a) && is_convex(b);
+  ProbeContacts contacts({a, pose_a, b, pose_b, true, margin, budget},
+                         {b, pose_b, a, pose_a, false, margin, budget});
+  const Manifold manifold = chosen(contacts, convex);
+  if (contacts.is_subset() || !contacts.is_exhausted()) return manifold;
+  contacts.use_subset();
+  return chosen(contacts, convex);
 }
 
 }  // namespace mrhi

@@ -31,28 +31,24 @@ bool MeshNearest::is_all() const {
          surface_.is_support(nearest(), gap());
 }
 
-/// Branch and bound, the nearer child first: a node's ball, about its centre c with its radius r, has nothing
-/// within `limit` of the segment where c is farther from it than r + limit.
+/// Branch and bound, the nearer child first: a node has nothing within `limit` of the segment where its box
+/// is farther from the segment's. kRounding keeps parts at the limit itself.
 template <typename Limit, typename See>
 void MeshNearest::visit(const MeshTree& tree, const Limit& limit, const See& see) const {
+  constexpr double kRounding = 1e-12;  // [m]
   struct Open {
     int node;
-    double squared;  // from the node's centre to the segment
+    double squared;  // from the node's box to the segment's
   };
-  const double length_squared = segment_.along.squaredNorm();
-  const double per_squared = length_squared > 0.0 ? 1.0 / length_squared : 0.0;
-  const auto look = [&](int node) -> Open {
-    const Vector3 offset = tree.node(node).centre - segment_.start;
-    const double s = std::max(0.0, std::min(per_squared * segment_.along.dot(offset), 1.0));
-    return {node, (offset - s * segment_.along).squaredNorm()};
-  };
+  const Vector3 middle = segment_.middle(), half = 0.5 * segment_.along.cwiseAbs();
+  const auto look = [&](int node) -> Open { return {node, tree.node(node).squared_gap(middle, half)}; };
   std::array<Open, MeshTree::kMaxLevels> open;
   std::size_t count = 0;
   open[count++] = look(0);
   while (count > 0) {
     const Open next = open[--count];
     const MeshTree::Node& node = tree.node(next.node);
-    const double limit_now = limit(), reach = node.radius + limit_now;
+    const double limit_now = limit(), reach = limit_now + kRounding;
     if (next.squared > reach * reach || is_below(node, limit_now)) continue;
     for (int i = node.first; i < node.first + node.count; ++i) see(tree.part(i));
     if (node.count > 0) continue;
@@ -66,7 +62,15 @@ void MeshNearest::visit(const MeshTree& tree, const Limit& limit, const See& see
 /// The limit shrinks as nearer parts are found: it is evaluated at every node.
 void MeshNearest::search(const MeshTree& tree, double range) {
   visit(
-      tree, [&] { return limit(range); }, [&](int part) { measure(part, range); });
+      tree,
+      [&] {
+        ++visits_;
+        return limit(range);
+      },
+      [&](int part) {
+        ++visits_;
+        measure(part, range);
+      });
 }
 
 /// All parts that may be the nearest one while the segment's ends have not moved by more than `margin`. A way

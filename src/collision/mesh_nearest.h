@@ -47,6 +47,8 @@ class MeshNearest {
   }
   /// The part that it is on, as the tree names it, or another near it if nothing is within the range.
   int part() const { return on_face_.distance <= on_edge_.distance + kSameDistance ? face_ : edge_; }
+  /// Nodes and parts that the search has looked at.
+  int visits() const { return visits_; }
   /// From the surface to the segment.
   Vector3 gap() const { return segment_.at(nearest().stretch.middle()) - nearest().point; }
 
@@ -73,6 +75,7 @@ class MeshNearest {
   const int faces_;
   SurfaceNearest on_face_, on_edge_;
   int face_ = -1, edge_ = -1;
+  int visits_ = 0;
   Vector3 facing_ = Vector3::Zero();  // unit, from the nearest so far to the segment
   double min_height_ = 0.0;           // that any of the segment reaches along it
 };

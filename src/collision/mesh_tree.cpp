@@ -127,7 +127,7 @@ void MeshTree::bound(const MeshSurface& surface, Node& node, int first, int last
   Eigen::AlignedBox3d box;
   Vector3 sum = Vector3::Zero();
   each([&](const Vector3& p) { box.extend(p); }, [&](const Vector3& n) { sum += n; });
-  node.centre = box.center();
+  node.centre = box.center(), node.half = 0.5 * box.sizes();
   node.normal = sum.norm() > 1e-9 ? Vector3(sum.normalized()) : Vector3::UnitZ();
   node.cos_spread = 1.0;
   each(

@@ -6,13 +6,14 @@
 
 namespace mrhi {
 
-/// A tree over the faces and edges of a surface. Each node knows a ball and a slab that hold its parts, and a
-/// cone that holds their normals: on a curved surface the slab is thin, and a search that knows a direction
-/// sees at once that a node is below all it has found. (Spatialized normal cones: Johnson & Cohen 2001.)
+/// A tree over the faces and edges of a surface. Each node knows a ball, a box and a slab that hold its
+/// parts, and a cone that holds their normals. A box holds long thin faces far more closely than a ball. On a
+/// curved surface the slab is thin, and a search that knows a direction sees at once that a node is below all
+/// it has found. (Spatialized normal cones: Johnson & Cohen 2001.)
 class MeshTree {
  public:
   struct Node {
-    Vector3 centre;
+    Vector3 centre, half;  // of the box along the mesh's axes, and the centre of the ball
     double radius;
     Vector3 normal;
     double top, bottom;             // of the slab, from the centre, along the normal and against it
@@ -21,6 +22,10 @@ class MeshTree {
 
     /// Parts are no nearer to the segment than this; negative if it may cut them.
     double distance(const Segment& segment) const;
+    /// Squared distance of this node's box from a box along the mesh's axes: 0 if they overlap.
+    double squared_gap(const Vector3& middle, const Vector3& half_size) const {
+      return ((centre - middle).cwiseAbs() - half - half_size).cwiseMax(0.0).squaredNorm();
+    }
     /// The planes of its parts are no less deep around both ends of the segment than this.
     double depth(const Segment& segment) const;
     /// False if no part is where a straight way along its normal leads from what of the segment comes out

@@ -1,10 +1,14 @@
 #include "overlap.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
+#include <optional>
 
+#include "../scene/solid_mesh.h"
 #include "../text/text.h"
+#include "mesh_tree.h"
 #include "neighbours.h"
 #include "scene_geometry.h"
 
@@ -23,11 +27,50 @@ bool are_joined(const Scene& scene, std::size_t a, std::size_t b) {
   });
 }
 
+/// About a body, in its frame. Of meshes their colliders know the box: fine ones have many vertices.
+Eigen::AlignedBox3d quick_box(const Body& body, const std::vector<ManifoldShape>& shapes) {
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const PlacedShape& placed = body.shapes[i];
+    if (shapes[i].mesh == nullptr) {
+      box.extend(box_around(placed));
+      continue;
+    }
+    const Eigen::AlignedBox3d& own = shapes[i].mesh->shape().surface.bounds();
+    const Vector3 centre = placed.pose * Vector3(own.center()),
+                  half = 0.5 * (placed.pose.orientation.toRotationMatrix().cwiseAbs() * own.sizes());
+    box.extend(Eigen::AlignedBox3d(centre - half, centre + half));
+  }
+  return box;
+}
+
+/// True if a plane along the faces of one of the boxes about two bodies separates them.
+bool are_apart(const Eigen::AlignedBox3d& a, const Pose& pose_a, const Eigen::AlignedBox3d& b,
+               const Pose& pose_b) {
+  const auto is_beyond = [](const Eigen::AlignedBox3d& box, const Pose& pose,
+                            const Eigen::AlignedBox3d& other, const Pose& other_pose) {
+    const Matrix3 turn = (pose.orientation.conjugate() * other_pose.orientation).toRotationMatrix();
+    const Vector3 centre = pose.to_local(other_pose * Vector3(other.center()));
+    const Vector3 apart =
+        (centre - box.center()).cwiseAbs() - 0.5 * box.sizes() - 0.5 * (turn.cwiseAbs() * other.sizes());
+    return apart.maxCoeff() > 0.0;
+  };
+  return is_beyond(a, pose_a, b, pose_b) || is_beyond(b, pose_b, a, pose_a);
+}
+
+/// In ordinary searches of a mesh.
+double work_of(const ManifoldShape& shape, double distance) {
+  constexpr double kClosedForm = 0.1;
+  if (shape.mesh == nullptr) return kClosedForm;
+  return distance < 0.0 ? shape.mesh->deep_search_cost(-distance) : shape.mesh->search_cost();
+}
+
 /// A body's union of shapes, as a place in world sees it.
 struct Solid {
   const Body& body;
   const std::vector<ManifoldShape>& shapes;
   const Pose& pose;
+  SearchBudget& budget;
 
   struct Depth {
     double depth;    // of the place below the surface, < 0 outside [m]
@@ -40,6 +83,7 @@ struct Solid {
       const Pose in_world = pose * body.shapes[i].pose;
       const Vector3 local = in_world.to_local(place);
       const ClosestFeatures found = closest_on(shapes[i].shape, shapes[i].mesh, {local, local, 0.0}, kFar);
+      budget.spend(work_of(shapes[i], found.distance));
       if (-found.distance > deepest.depth)
         deepest = {-found.distance, in_world.orientation * Vector3(-found.normal)};
     }
@@ -49,21 +93,25 @@ struct Solid {
 
 /// Diameter of the largest ball found inside both bodies, a lower bound of their overlap [m].
 ///
-/// The search starts from points all over the first body, its centre first, and moves into the body in which
-/// it is less deep by half the difference of both depths, which leads to the middle of a layer between two
-/// flat faces. A manifold's depth, between corners and edges, does not detect coinciding faces.
+/// The search starts from points all over the first body, next to its centre first, and moves into the body
+/// in which it is less deep by half the difference of both depths, which leads to the middle of a layer
+/// between two flat faces. From the centre itself a round surface would be as near everywhere, so that a
+/// search for the nearest part would look at all. A manifold's depth, between corners and edges, does not
+/// detect coinciding faces.
 double common_ball(const Solid& a, const Solid& b) {
   constexpr int kAcross = 5, kMaxSteps = 16;
-  const Eigen::AlignedBox3d box = box_around(a.body);
+  const Eigen::AlignedBox3d box = quick_box(a.body, a.shapes);
   double largest = 0.0;
   constexpr int kStarts = kAcross * kAcross * kAcross;
   for (int i = 0; i < kStarts; ++i) {
     const int start = (i + kStarts / 2) % kStarts;
     const int row = start / kAcross, layer = row / kAcross;
     const Vector3 part(start % kAcross, row % kAcross, layer);
-    const Vector3 offset = (2.0 * part / (kAcross - 1) - Vector3::Ones()) * 0.9;
+    const Vector3 beside = start == kStarts / 2 ? Vector3(0.31, 0.17, 0.23) : Vector3(0, 0, 0);
+    const Vector3 offset = (2.0 * part / (kAcross - 1) - Vector3::Ones()) * 0.9 + beside;
     Vector3 place = a.pose * Vector3(box.center() + offset.cwiseProduct(0.5 * box.sizes()));
     for (int step = 0; step < kMaxSteps; ++step) {
+      if (a.budget.left <= 0.0) return largest;
       const Solid::Depth in_a = a.at(place), in_b = b.at(place);
       largest = std::max(largest, 2.0 * std::min(in_a.depth, in_b.depth));
       const Solid::Depth& lesser = in_a.depth < in_b.depth ? in_a : in_b;
@@ -78,6 +126,61 @@ double common_ball(const Solid& a, const Solid& b) {
   return largest;
 }
 
+/// Half of the largest wall that is thin [m]. In those of kOverlap and more, common_ball() finds what two
+/// bodies share.
+constexpr double kThin = 0.55 * kOverlap;
+
+/// Whether the wall behind a place on the surface of `solid` lies in the other body; nothing if it is thick.
+///
+/// The place moves in along the normal as long as it gets as much deeper, which is to the middle of the wall.
+/// An open surface has no inside: there the place itself lies on that of the other.
+std::optional<bool> is_wall_shared(const Solid& solid, const Vector3& place, const Vector3& inward,
+                                   bool is_closed, const Solid& other) {
+  constexpr int kSteps = 5;
+  constexpr double kStraight = 0.95, kCoincides = 1e-6;  // ratio, [m]
+  if (!is_closed) return std::abs(other.at(place).depth) < kCoincides;
+  double depth = 0.0;
+  for (int step = 1; step <= kSteps; ++step) {
+    const double next = step * kThin / kSteps;
+    if (solid.at(place + next * inward).depth < kStraight * next) break;
+    if (step == kSteps) return std::nullopt;
+    depth = next;
+  }
+  if (depth == 0.0) return std::nullopt;
+  return other.at(place + depth * inward).depth > 0.5 * depth;
+}
+
+/// True if most of the first body's thin walls lie in the other. Walls are sampled at triangles of its
+/// meshes: the i-th is at the fractional part of i times the golden ratio.
+bool shares_walls(const Solid& solid, const Solid& other) {
+  constexpr int kSamples = 24, kLeastThin = 12;
+  constexpr double kGoldenRatio = 0.6180339887498949, kMost = 0.5;
+  for (std::size_t i = 0; i < solid.shapes.size(); ++i) {
+    if (solid.shapes[i].mesh == nullptr) continue;
+    const TriangleMesh& mesh = *std::get<Mesh>(solid.shapes[i].shape).triangles;
+    const bool is_closed = solid.shapes[i].mesh->shape().surface.closed();
+    const Pose in_world = solid.pose * solid.body.shapes[i].pose;
+    int thin = 0, shared = 0;
+    for (int k = 0; k < kSamples && solid.budget.left > 0.0; ++k) {
+      const double part = std::fmod(kGoldenRatio * k, 1.0);
+      const auto& triangle =
+          mesh.triangles[static_cast<std::size_t>(part * static_cast<double>(mesh.triangles.size()))];
+      const Vector3 &first = mesh.vertices[triangle[0]], &second = mesh.vertices[triangle[1]],
+                    &third = mesh.vertices[triangle[2]];
+      const Vector3 normal = (second - first).cross(third - first);
+      if (normal.isZero(0.0)) continue;
+      const Vector3 inward = -(in_world.orientation * Vector3(normal.normalized()));
+      const auto is_shared =
+          is_wall_shared(solid, in_world * Vector3((first + second + third) / 3.0), inward, is_closed, other);
+      if (!is_shared) continue;
+      ++thin;
+      if (*is_shared) ++shared;
+    }
+    if (thin >= kLeastThin && shared > kMost * thin) return true;
+  }
+  return false;
+}
+
 bool has_mesh(const Body& body) {
   return std::any_of(body.shapes.begin(), body.shapes.end(),
                      [](const PlacedShape& placed) { return std::holds_alternative<Mesh>(placed.shape); });
@@ -87,25 +190,35 @@ bool has_mesh(const Body& body) {
 
 /// The deepest point of all pairs of shapes. Each is of two shapes alone: a body that has several may have to
 /// go farther to be out.
-double overlap(const Scene& scene, const SceneGeometry& geometry, const std::vector<BodyState>& bodies,
-               std::size_t a, std::size_t b) {
-  double deepest = 0.0;
+Overlap overlap(const Scene& scene, const SceneGeometry& geometry, const std::vector<BodyState>& bodies,
+                std::size_t a, std::size_t b, SearchBudget& budget) {
+  Overlap found;
+  if (are_apart(quick_box(scene.bodies[a], geometry.shapes[a]), bodies[a].pose,
+                quick_box(scene.bodies[b], geometry.shapes[b]), bodies[b].pose))
+    return found;
   if (has_mesh(scene.bodies[a]) || has_mesh(scene.bodies[b])) {
-    const Solid of_a{scene.bodies[a], geometry.shapes[a], bodies[a].pose},
-        of_b{scene.bodies[b], geometry.shapes[b], bodies[b].pose};
+    const Solid of_a{scene.bodies[a], geometry.shapes[a], bodies[a].pose, budget},
+        of_b{scene.bodies[b], geometry.shapes[b], bodies[b].pose, budget};
     const bool smaller = of_a.body.bounding_radius < of_b.body.bounding_radius;
-    deepest = smaller ? common_ball(of_a, of_b) : common_ball(of_b, of_a);
-    if (deepest > kOverlap) return deepest;
+    const Solid &first = smaller ? of_a : of_b, &second = smaller ? of_b : of_a;
+    constexpr double kForWalls = 0.3;  // of the budget
+    const double for_walls = kForWalls * budget.left;
+    budget.left -= for_walls;
+    found.depth = common_ball(first, second);
+    budget.left += for_walls;
+    if (found.depth > kOverlap) return found;
+    found.shares_walls = shares_walls(first, second) || shares_walls(second, first);
+    if (found.shares_walls) return found;
   }
   for (std::size_t i = 0; i < scene.bodies[a].shapes.size(); ++i) {
     for (std::size_t j = 0; j < scene.bodies[b].shapes.size(); ++j) {
-      const Manifold manifold =
-          body_manifold(geometry.shapes[a][i], bodies[a].pose * scene.bodies[a].shapes[i].pose,
-                        geometry.shapes[b][j], bodies[b].pose * scene.bodies[b].shapes[j].pose, 0.0);
-      for (const ManifoldPoint& point : manifold) deepest = std::max(deepest, point.depth);
+      const Manifold manifold = body_manifold(
+          geometry.shapes[a][i], bodies[a].pose * scene.bodies[a].shapes[i].pose, geometry.shapes[b][j],
+          bodies[b].pose * scene.bodies[b].shapes[j].pose, 0.0, kAnyBreadth, &budget);
+      for (const ManifoldPoint& point : manifold) found.depth = std::max(found.depth, point.depth);
     }
   }
-  return deepest;
+  return found;
 }
 
 namespace {
@@ -125,7 +238,7 @@ std::vector<int> mechanisms(const Scene& scene) {
   return first;
 }
 
-/// see(a, b, depth), until it returns false.
+/// see(a, b, overlap), until it returns false.
 template <class See>
 void each_overlap(const Scene& scene, bool in_mechanisms, const See& see) {
   if (in_mechanisms && scene.joints.empty()) return;
@@ -139,8 +252,11 @@ void each_overlap(const Scene& scene, bool in_mechanisms, const See& see) {
       if ((one.fixed && other.fixed) || (first[a] == first[b]) != in_mechanisms || !are_near(one, other) ||
           are_joined(scene, a, b))
         continue;
-      const double depth = overlap(scene, geometry, states, a, b);
-      if (depth > kOverlap && !see(a, b, depth)) return;
+      constexpr double kAtLoading = 2e5;  // searches: not bounded by a step
+      SearchBudget budget;
+      budget.left = kAtLoading;
+      const Overlap found = overlap(scene, geometry, states, a, b, budget);
+      if (!found.is_allowed() && !see(a, b, found)) return;
     }
   }
 }
@@ -151,8 +267,9 @@ std::string overlaps_at_start(const Scene& scene) {
   constexpr int kNamed = 5;
   std::string all;
   int named = 0;
-  each_overlap(scene, false, [&](std::size_t a, std::size_t b, double depth) {
-    all += (all.empty() ? "'" : ", '") + scene.bodies[a].name + "' is " + text::number(depth) + " m in '" +
+  each_overlap(scene, false, [&](std::size_t a, std::size_t b, const Overlap& found) {
+    all += (all.empty() ? "'" : ", '") + scene.bodies[a].name + "' is " +
+           (found.shares_walls ? "inside thin walls of '" : text::number(found.depth) + " m in '") +
            scene.bodies[b].name + "'";
     return ++named < kNamed;
   });
@@ -161,7 +278,7 @@ std::string overlaps_at_start(const Scene& scene) {
 
 std::vector<std::pair<int, int>> overlaps_in_mechanisms(const Scene& scene) {
   std::vector<std::pair<int, int>> pairs;
-  each_overlap(scene, true, [&](std::size_t a, std::size_t b, double) {
+  each_overlap(scene, true, [&](std::size_t a, std::size_t b, const Overlap&) {
     pairs.emplace_back(static_cast<int>(a), static_cast<int>(b));
     return true;
   });

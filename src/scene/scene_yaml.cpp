@@ -275,7 +275,12 @@ void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
 }
 
 void apply_joints_yaml(const std::string& source, const std::string& yaml, Scene& scene) {
-  read_yaml<SceneError>(source, [&] { read_joint_settings({source, "", load_yaml(source, yaml)}, scene); });
+  read_yaml<SceneError>(source, [&] {
+    const YamlElement joints{source, "", load_yaml(source, yaml)};
+    const bool is_empty = joints.node.IsNull() || (joints.node.IsMap() && joints.node.size() == 0);
+    if (scene.joints.empty() && !is_empty) joints.refuse("nothing: this URDF has no joints");
+    read_joint_settings(joints, scene);
+  });
 }
 
 void apply_material_yaml(const std::string& source, const std::string& yaml, Body& body) {

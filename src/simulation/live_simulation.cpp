@@ -48,8 +48,13 @@ Scene near_to(const Simulation& simulation, std::size_t old, const Body& last) {
   return near;
 }
 
-/// Throws std::invalid_argument if the body overlaps one of the first `old` bodies.
-void check_free_place(const Simulation& simulation, std::size_t old, const Body& body) {
+/// Searches of meshes for one spawn: a few milliseconds, as frames wait meanwhile. Beyond them each pair
+/// still has kLeastOfPair: what they do not find, the contacts push apart.
+constexpr double kSearchesOfSpawn = 3000.0, kLeastOfPair = 30.0;
+
+/// Throws std::invalid_argument if the body overlaps one of the first `old` bodies. `left` are the searches
+/// that the spawn has left.
+void check_free_place(const Simulation& simulation, std::size_t old, const Body& body, double& left) {
   const Scene near = near_to(simulation, old, body);
   if (near.bodies.size() == 1) return;
   const SceneGeometry geometry(near);
@@ -57,10 +62,15 @@ void check_free_place(const Simulation& simulation, std::size_t old, const Body&
   for (const Body& one : near.bodies) states.push_back(start_state(one));
   const std::size_t added = near.bodies.size() - 1;
   for (std::size_t b = 0; b < added; ++b) {
-    const double depth = overlap(near, geometry, states, added, b);
-    if (depth <= kOverlap) continue;
-    throw std::invalid_argument("'" + near.bodies[added].name + "' would be " + text::number(depth) +
-                                " m in '" + near.bodies[b].name + "'; allowed: a place that is free");
+    SearchBudget budget;
+    budget.left = std::max(left, kLeastOfPair);
+    const Overlap found = overlap(near, geometry, states, added, b, budget);
+    left -= budget.spent;
+    if (found.is_allowed()) continue;
+    throw std::invalid_argument(
+        "'" + near.bodies[added].name + "' would be " +
+        (found.shares_walls ? "inside thin walls of '" : text::number(found.depth) + " m in '") +
+        near.bodies[b].name + "'; allowed: a place that is free");
   }
 }
 
@@ -168,8 +178,9 @@ void LiveSimulation::add(const Scene& part) {
   for (const Body& body : part.bodies) check_in_bounds(body.name, body.start.position, scene.bounds);
   auto next = std::make_unique<Simulation>(std::move(scene), simulation_->configuration());
   next->go_on_from(*simulation_);
+  double left = kSearchesOfSpawn;
   for (std::size_t b = old; b < next->scene().bodies.size(); ++b)
-    check_free_place(*next, old, next->scene().bodies[b]);
+    check_free_place(*next, old, next->scene().bodies[b], left);
   simulation_ = std::move(next);
 }
 

@@ -322,6 +322,30 @@ TEST(Overlaps, of_meshes_inside_each_other_are_refused_whatever_coincides) {
   test::expect_words(error(box, "0.05 0.01 0", plate), {"'b'", "'a'", "at most 0.001 m"});
 }
 
+// No ball of 1 mm fits in a wall of 0.9 mm.
+TEST(Overlaps, of_thin_walls_in_one_place_are_refused_and_walls_that_touch_are_not) {
+  const test::Folder folder;
+  std::string text;
+  for (int i = 0; i < 8; ++i)
+    text += std::string("v ") + (i & 1 ? "0.03 " : "-0.03 ") + (i & 2 ? "0.03 " : "-0.03 ") +
+            (i & 4 ? "0.00045\n" : "-0.00045\n");
+  const std::string closed = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  folder.write("wall.obj", text + closed);
+  const auto error = [&](const std::string& file, const std::string& place) {
+    const std::string mesh =
+        test::kInertial + ("<collision><geometry><mesh filename=\"" + file + "\"/></geometry></collision>");
+    return test::scene_error(folder.write(
+        "s.urdf",
+        test::robot(test::link("a", mesh) + test::joint("floating", "world", "a") + test::link("b", mesh) +
+                    test::joint("floating", "world", "b", "xyz=\"" + place + "\""))));
+  };
+  for (const char* place : {"0 0 0", "0.0002 0 0", "0 0.0003 0.0002"})
+    test::expect_words(error("wall.obj", place),
+                       {"'b' is inside thin walls of 'a'", "allowed: at most 0.001 m"});
+  for (const char* place : {"0 0 0.0009", "0 0 0.0008", "0.06 0 0", "0.0599 0 0", "0 0 0.01"})
+    EXPECT_EQ(error("wall.obj", place), "") << place;
+}
+
 TEST(Overlaps, of_fixtures_with_each_other_are_their_own_affair) {
   const std::string shelf = test::link("s", test::kBox) + test::joint("fixed", "world", "s") +
                             test::link("t", test::kBox) + test::joint("fixed", "world", "t");

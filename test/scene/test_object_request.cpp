@@ -188,5 +188,22 @@ TEST(ObjectRequest, a_colour_has_parts_from_0_to_1_and_no_others) {
   EXPECT_EQ(error_of(request), "");
 }
 
+TEST(ObjectRequest, joints_for_a_urdf_without_any_are_refused_with_the_reason) {
+  ObjectRequest request = urdf(test::robot(test::link("one", test::kInertial + std::string(test::kBox)) +
+                                           test::joint("floating", "world", "one")));
+  request.whole = true;
+  for (const char* joints : {"5", "{x: 1}", "[1]"}) {
+    request.joints = joints;
+    try {
+      requested_scene(request, {});
+      FAIL() << joints;
+    } catch (const SceneError& refusal) {
+      test::expect_words(refusal.what(), {"joints", "allowed: nothing: this URDF has no joints"});
+    }
+  }
+  request.joints = "{}";
+  EXPECT_EQ(requested_scene(request, {}).bodies.size(), 1u);
+}
+
 }  // namespace
 }  // namespace mrhi
