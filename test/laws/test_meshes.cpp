@@ -170,38 +170,6 @@ TEST(Meshes, a_die_in_a_cup_comes_to_rest_and_gains_no_energy) {
   }
 }
 
-// Most of the 400 faces of either wall are within a contact's range of the other: the budget of a step's
-// searches is exhausted. With fewer contacts the cups still stand in each other. 20 um is what a weight of 1
-// N may sink and sway until the springs hold it.
-TEST(Meshes, cups_stacked_wall_in_wall_stay_stacked_beyond_the_budget_of_searches) {
-  TriangleMesh conical = cup(0.03, 0.028, 0.002, 0.08, 400);
-  for (Vector3& vertex : conical.vertices) {
-    const double scale = 1.0 + 2.0 * vertex.z();
-    vertex.x() *= scale, vertex.y() *= scale;
-  }
-  Scene scene;
-  Body table = box_body(Vector3(1, 1, 0.1), 1.0);
-  table.fixed = true;
-  table.start.position = Vector3(0, 0, -0.05);
-  Body lower = as_mesh(box_body(Vector3::Constant(0.08), 0.1), conical), upper = lower;
-  table.name = "table", lower.name = "lower", upper.name = "upper";
-  lower.start.position.z() = 0.002;
-  upper.start.position.z() = 0.002 + 0.0365;
-  scene.bodies = {table, lower, upper};
-  scene.gravity = Vector3(0, 0, -9.81);
-  Simulation simulation(scene, testing::unfiltered(ContactModelKind::implicit));
-  const auto pose = [&](std::size_t body) { return simulation.state().bodies[body].pose; };
-  Pose settled;
-  for (int frame = 0; frame <= 120; ++frame) {
-    simulation.advance({at(frame / 60.0), {}});
-    if (frame == 60) settled = pose(2);
-  }
-  EXPECT_LT((pose(2).position - settled.position).norm(), 2e-5);
-  EXPECT_LT(turned(pose(2), Pose{}), 0.01);
-  EXPECT_LT(turned(pose(1), Pose{}), 0.01);
-  EXPECT_GT(pose(2).position.z() - pose(1).position.z(), 0.02);
-}
-
 /// Scene (a) with another shape in place of the cube: carried to and fro for 3 s.
 std::vector<Pose> held(const Shape& shape) {
   testing::PinchScene pinch;
