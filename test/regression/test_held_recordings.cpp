@@ -167,14 +167,14 @@ class HeldRecording : public ::testing::TestWithParam<HeldObject> {
 };
 
 /// A person's fingers do not keep still among each other while they hold: 3 to 9 mm here. The object goes
-/// with them and moves no farther than they do, and two fifths more: grasp assist carries it with the distal
-/// phalanges alone, while their movement is that of all that pressed. Measured: 10.7 mm where they move by
-/// 8.0, in lm_hmd_pinch at 1 g, all of it as that hand half opens at 7.2 s; 8.1 mm or less in the others.
+/// with them and moves no farther than they do, and three fifths more: grasp assist carries it with the
+/// distal phalanges alone, while their movement is that of all that pressed, and it waits until more than
+/// half of a side's push slips. Measured: 6.9 mm where they move by 4.5, in lm_pinch_and_move at 1 g.
 void expect_held(const HeldObject& held, const HeldOutcome& outcome) {
   EXPECT_EQ(outcome.grasps, 1);
   EXPECT_LT(outcome.begins, held.settled);
   EXPECT_GT(outcome.ends, held.opens);
-  EXPECT_LT(outcome.object_moved, 1.4 * outcome.joints_moved);
+  EXPECT_LT(outcome.object_moved, 1.6 * outcome.joints_moved);
   EXPECT_LT(outcome.joints_moved, 0.01);
 }
 
