@@ -101,6 +101,8 @@ def _ratio_to(model, measure, pairs):
     for pair in pairs:
         if pair['measure'] == measure:
             ratio = [float(pair[key]) for key in ('effect', 'low', 'high')]
+            if not pair['effect_name'].startswith('ratio'):
+                raise MeasurementError('%s has no %s to divide by' % (model, measure))
             if pair['b'] != model:
                 ratio = [1 / ratio[0], 1 / ratio[2], 1 / ratio[1]]
             p = min(1.0, FAMILY * float(pair['p']))
@@ -110,5 +112,6 @@ def _ratio_to(model, measure, pairs):
 
 RECIPES = {
     'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),
-    'registered': Recipe('1 minute', ['scripts/study/analysis.py', 'scripts/study/study_data.py'], registered),
+    'registered': Recipe('1 minute', CORE + ['src/synthetic', 'src/training', 'scripts/study/analysis.py', 'scripts/study/study_data.py'],
+                         registered),
 }
