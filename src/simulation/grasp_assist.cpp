@@ -15,9 +15,9 @@ constexpr double kBuriedDepth = 0.015;
 /// Compliance, beyond its depth, of a hand inside a body that it must not grasp: more than any finger moves
 /// in a step, so that it applies no force within the step either [m].
 constexpr double kNoForceCompliance = 1.0;
-/// Rate at which a finger that has stopped or is opposed regains its force [m/s]; what its pad yields it
-/// regains at once [m].
-constexpr double kRecoverySpeed = 0.03, kSoftDepth = 0.002;
+/// Rate at which a finger that has stopped or is opposed regains its force [m/s]. Where the last 2 mm came
+/// back at once, simulated operators dropped the long cuboid three times as often.
+constexpr double kRecoverySpeed = 0.03;
 /// Distance of a body from its place in the hand at which the grip becomes active [m].
 constexpr double kMaxOffset = 0.0015;
 /// Time constant of Grip::mean_aperture [s].
@@ -338,7 +338,7 @@ void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, doubl
 /// Sets the contact's compliance. A finger that closes on a body touches it lightly until another part of the
 /// hand opposes it, and so does a hand that has released it: the finger's own motion adds no force. It
 /// resists the body's motion, so it still carries what it carried, and what falls onto it. A finger that has
-/// stopped, or is opposed, regains its force slowly, but for what a pad yields.
+/// stopped, or is opposed, regains its force slowly.
 void GraspAssist::set_compliance(const SimulationState& state, double step, Contact& contact) const {
   const bool released = std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& grip) {
     return grip.released && objects_.is_in(grip, contact.key.hand, contact.key.body);
@@ -349,7 +349,7 @@ void GraspAssist::set_compliance(const SimulationState& state, double step, Cont
   });
   const double kept = std::min(contact.compliance, std::max(contact.depth, 0.0));
   if (!released && (!closes || objects_.is_opposed(contact, state.contacts))) {
-    contact.compliance = kept <= kSoftDepth ? 0.0 : kept - kRecoverySpeed * step;
+    contact.compliance = std::max(kept - kRecoverySpeed * step, 0.0);
     return;
   }
   contact.struck = true;
