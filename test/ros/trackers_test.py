@@ -167,10 +167,10 @@ class TrackersTest(unittest.TestCase):
                 return False
             return True
 
-        stamp, end = rospy.Time.from_sec(motion.times[0] - 3.0), rospy.Time.from_sec(motion.times[0] - 0.01)
+        stamp, end = rospy.Time.from_sec(motion.times[0] - 1.0), rospy.Time.from_sec(motion.times[0] - 0.01)
         connected = comes_through(1.0)
         while stamp < end:
-            stamp = min(stamp + rospy.Duration(0.05), end)
+            stamp = min(stamp + rospy.Duration(0.01), end)  # about the rate of what follows: else that looks like bursts
             came = comes_through(TIMEOUT if connected else 1.0)
             self.assertTrue(came or not connected, "the frame without a hand at %s is lost" % stamp)
             connected = came
