@@ -64,8 +64,7 @@ std::string ended(const std::string& yaml) {
 std::string yaml_complaint(const std::string& source, const YAML::Exception& error) {
   return yaml_place(source, error.mark) +
          ": not YAML: a bracket, brace, quote, colon or indentation is missing or in a wrong place; allowed: "
-         "YAML "
-         "such as 'key: [1, 2]' (the parser says: " +
+         "YAML such as 'key: [1, 2]' (the parser says: " +
          text::one_line(error.msg) + ")";
 }
 

@@ -39,7 +39,7 @@ class LeapingClock(threading.Thread):
     def leap_for(self, seconds, elsewhere):
         self.back = time.monotonic() + seconds
         self.elsewhere = elsewhere
-        wait_until(lambda: self.elsewhere is None, "the clock's return")
+        wait_until(lambda: self.elsewhere is None, "the clock to be back")
 
     def run(self):
         while not self.over.wait(0.005):
