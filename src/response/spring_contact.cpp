@@ -103,7 +103,7 @@ double kept_twist(const SpringContact& solved, double step) {
   return spring.twist + followed * (solved.response.torque / spring.twist_stiffness - spring.twist);
 }
 
-/// Writes force and friction state. Returns by how much the anchor on the body slides [m].
+/// Writes force and friction state. Returns the displacement of the anchor on the body [m].
 ///
 ///     sticks:     |k q+| <= L
 ///     creeps:     |k q+| > L, and it would slide under mu by no more than the static speed
