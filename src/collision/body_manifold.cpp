@@ -1,5 +1,7 @@
 #include "body_manifold.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "contact_region.h"
@@ -65,6 +67,21 @@ int name_of(double s) {
 }
 
 }  // namespace
+
+/// A search from deeper than kDeep, or on the surface itself, takes more than others.
+double search_work(const ManifoldShape& shape, double distance) {
+  constexpr double kDeep = 0.002, kCoincides = 1e-9;  // [m]
+  constexpr double kClosedForm = 0.1;
+  if (shape.mesh == nullptr) return kClosedForm;
+  const bool is_deep = distance < -kDeep || std::abs(distance) < kCoincides;
+  return is_deep ? shape.mesh->deep_search_cost(std::max(0.0, -distance)) : shape.mesh->search_cost();
+}
+
+std::size_t sampled(std::size_t i, std::size_t count) {
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  return static_cast<std::size_t>(std::fmod(kGoldenRatio * static_cast<double>(i), 1.0) *
+                                  static_cast<double>(count));
+}
 
 ManifoldShape::ManifoldShape(const Shape& placed, const MeshCollider* collider)
     : shape(placed),

@@ -71,7 +71,15 @@ struct ManifoldShape {
 
 constexpr double kAnyBreadth = -1e300;  ///< [m]
 
-/// Work that manifolds of meshes may take, in ordinary searches of a mesh (1 to 2 us each). A pair that would
+/// Work of a search that found the surface of `shape` at this distance [m], in ordinary searches of a mesh
+/// (1 to 2 us each).
+double search_work(const ManifoldShape& shape, double distance);
+
+/// Index of the i-th of a sample of `count` parts: at the fractional part of i times the golden ratio, so
+/// that the sample is even wherever it ends.
+std::size_t sampled(std::size_t i, std::size_t count);
+
+/// Work that manifolds of meshes may take, as of search_work(). A pair that would
 /// exceed it has fewer contact points, spread over what was found and a sample of its edges.
 struct SearchBudget {
   /// Of a pair, whose sweep through a step is included, and of all pairs of a step, samples not included.

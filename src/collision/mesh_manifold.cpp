@@ -17,10 +17,6 @@ constexpr int kCornerNames = 100, kEdgeNames = 28, kSecond = 128;
 /// Margin at an edge's ends, which belong to the corners there: else one point would have two names.
 constexpr double kAtEnd = 1e-6;
 constexpr std::size_t kDirections = 8;
-/// A search from deeper than kDeep, or on the surface itself, costs more than others [m].
-constexpr double kDeep = 0.002, kCoincides = 1e-9;
-/// Work of a search in a shape other than a mesh: closed forms.
-constexpr double kClosedFormWork = 0.1;
 /// Edges of each mesh that stand for all beyond the budget. Each is measured with one of its corners.
 constexpr std::size_t kSampledEdges = 24;
 
@@ -57,11 +53,7 @@ struct Probing {
   /// closest_on() the other shape, charged to the budget.
   std::optional<ClosestFeatures> search(const Capsule& local, double range) const {
     const auto features = closest_on(other, local, range);
-    const bool is_deep =
-        features && (features->distance < -kDeep || std::abs(features->distance) < kCoincides);
-    budget.spend(other.mesh == nullptr ? kClosedFormWork
-                 : is_deep             ? other.mesh->deep_search_cost(std::max(0.0, -features->distance))
-                                       : other.mesh->search_cost());
+    budget.spend(search_work(other, features ? features->distance : range));
     return features;
   }
 
@@ -238,17 +230,13 @@ class ProbeContacts {
     }
     kept_[kept_count_++] = contact;
   }
-  /// The i-th edge is at the fractional part of i times the golden ratio, so that the sample is even wherever
-  /// it ends.
   void add_samples() {
-    constexpr double kGoldenRatio = 0.6180339887498949;
     for (const Probing& probing : both_) {
       if (probing.of.mesh == nullptr) continue;
       const std::vector<MeshSurface::Edge>& edges = probing.of.mesh->shape().surface.edges();
       const double limit = budget_.spent + budget_.sample;
       for (std::size_t i = 0; i < kSampledEdges && !edges.empty() && budget_.spent < limit; ++i) {
-        const double part = std::fmod(kGoldenRatio * static_cast<double>(i), 1.0);
-        const auto index = static_cast<std::size_t>(part * static_cast<double>(edges.size()));
+        const std::size_t index = sampled(i, edges.size());
         const MeshSurface::Edge& edge = edges[index];
         const Vector3 start = probing.pose * edge.start,
                       end = probing.pose * Vector3(edge.start + edge.along);

@@ -58,13 +58,6 @@ bool are_apart(const Eigen::AlignedBox3d& a, const Pose& pose_a, const Eigen::Al
   return is_beyond(a, pose_a, b, pose_b) || is_beyond(b, pose_b, a, pose_a);
 }
 
-/// In ordinary searches of a mesh.
-double work_of(const ManifoldShape& shape, double distance) {
-  constexpr double kClosedForm = 0.1;
-  if (shape.mesh == nullptr) return kClosedForm;
-  return distance < 0.0 ? shape.mesh->deep_search_cost(-distance) : shape.mesh->search_cost();
-}
-
 /// A body's union of shapes, as a place in world sees it.
 struct Solid {
   const Body& body;
@@ -83,7 +76,7 @@ struct Solid {
       const Pose in_world = pose * body.shapes[i].pose;
       const Vector3 local = in_world.to_local(place);
       const ClosestFeatures found = closest_on(shapes[i].shape, shapes[i].mesh, {local, local, 0.0}, kFar);
-      budget.spend(work_of(shapes[i], found.distance));
+      budget.spend(search_work(shapes[i], found.distance));
       if (-found.distance > deepest.depth)
         deepest = {-found.distance, in_world.orientation * Vector3(-found.normal)};
     }
@@ -151,20 +144,19 @@ std::optional<bool> is_wall_shared(const Solid& solid, const Vector3& place, con
 }
 
 /// True if most of the first body's thin walls lie in the other. Walls are sampled at triangles of its
-/// meshes: the i-th is at the fractional part of i times the golden ratio.
+/// meshes.
 bool shares_walls(const Solid& solid, const Solid& other) {
-  constexpr int kSamples = 24, kLeastThin = 12;
-  constexpr double kGoldenRatio = 0.6180339887498949, kMost = 0.5;
+  constexpr std::size_t kSamples = 24;
+  constexpr int kLeastThin = 12;
+  constexpr double kMost = 0.5;
   for (std::size_t i = 0; i < solid.shapes.size(); ++i) {
     if (solid.shapes[i].mesh == nullptr) continue;
     const TriangleMesh& mesh = *std::get<Mesh>(solid.shapes[i].shape).triangles;
     const bool is_closed = solid.shapes[i].mesh->shape().surface.closed();
     const Pose in_world = solid.pose * solid.body.shapes[i].pose;
     int thin = 0, shared = 0;
-    for (int k = 0; k < kSamples && solid.budget.left > 0.0; ++k) {
-      const double part = std::fmod(kGoldenRatio * k, 1.0);
-      const auto& triangle =
-          mesh.triangles[static_cast<std::size_t>(part * static_cast<double>(mesh.triangles.size()))];
+    for (std::size_t k = 0; k < kSamples && solid.budget.left > 0.0; ++k) {
+      const auto& triangle = mesh.triangles[sampled(k, mesh.triangles.size())];
       const Vector3 &first = mesh.vertices[triangle[0]], &second = mesh.vertices[triangle[1]],
                     &third = mesh.vertices[triangle[2]];
       const Vector3 normal = (second - first).cross(third - first);
