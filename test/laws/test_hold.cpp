@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
-#include "support/fixtures.h"
+#include "support/grips.h"
 
 namespace mrhi {
 namespace {
@@ -11,20 +9,16 @@ using testing::at;
 using testing::ball_body;
 using testing::box_body;
 using testing::finger;
+using testing::has_event;
 using testing::object_twist;
 using testing::play;
 using testing::scene_of;
+using testing::smooth;
 using testing::unfiltered;
 
 constexpr double kTipRadius = 0.008;
 constexpr double kHalfEdge = 0.025;
 constexpr double kOverlap = 0.004;
-
-/// Minimum-jerk way from 0 to 1 within `duration` [s] (Flash & Hogan 1985).
-double smooth(double t, double duration) {
-  const double x = std::clamp(t / duration, 0.0, 1.0);
-  return x * x * x * (10.0 + x * (-15.0 + 6.0 * x));
-}
 
 /// Two fingertips on either side of a cube along x: closed by 0.3 s, carried by `way` between 0.5 and 1.5 s,
 /// opened from `open` on.
@@ -43,13 +37,8 @@ Body cube() {
   return box_body(Vector3::Constant(2.0 * kHalfEdge), 0.1);
 }
 
-double energy(const Simulation& simulation) {
+double kinetic_energy_of_cube(const Simulation& simulation) {
   return kinetic_energy(simulation.scene().bodies[0], simulation.state().bodies[0]);
-}
-
-bool has_event(const Simulation& simulation, EventKind kind) {
-  const auto& events = simulation.result().events;
-  return std::any_of(events.begin(), events.end(), [kind](const Event& event) { return event.kind == kind; });
 }
 
 TEST(Hold, a_pinched_cube_follows_the_hand_and_is_reported_as_grasped) {
@@ -62,7 +51,7 @@ TEST(Hold, a_pinched_cube_follows_the_hand_and_is_reported_as_grasped) {
   // 0.1 kg on four springs of 100 N/m at the accelerations of this motion (0.7 m/s^2) gives way by 0.3 mm;
   // what is left of that 1 s later is slip.
   EXPECT_LE((simulation.state().bodies[0].pose.position - way).norm(), 0.001);
-  EXPECT_LE(energy(simulation), 1e-8);
+  EXPECT_LE(kinetic_energy_of_cube(simulation), 1e-8);
 }
 
 TEST(Hold, a_held_cube_comes_to_rest_instead_of_ringing) {
@@ -73,9 +62,9 @@ TEST(Hold, a_held_cube_comes_to_rest_instead_of_ringing) {
   SimulationState state = simulation.state();
   state.bodies[0] = pushed;
   simulation.set_state(state);
-  const double before = energy(simulation);
+  const double before = kinetic_energy_of_cube(simulation);
   play(simulation, 0.6 + 1.0 / 120, 1.6, 120.0, pinch(Vector3::Zero(), 10.0));
-  EXPECT_LE(energy(simulation), 1e-3 * before);
+  EXPECT_LE(kinetic_energy_of_cube(simulation), 1e-3 * before);
 }
 
 TEST(Hold, opening_the_pinch_lets_the_cube_go_gently) {
@@ -117,7 +106,7 @@ TEST(Energy, a_still_hand_beside_or_on_a_resting_object_moves_nothing) {
     const double x = kHalfEdge + kTipRadius + gap;
     play(simulation, 0.0, 1.0, 120.0,
          [x](double) { return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kTipRadius); });
-    EXPECT_EQ(energy(simulation), 0.0) << gap;
+    EXPECT_EQ(kinetic_energy_of_cube(simulation), 0.0) << gap;
     EXPECT_EQ(simulation.state().bodies[0].pose.position, Vector3::Zero());
   }
 }
@@ -129,13 +118,13 @@ TEST(Energy, a_ball_that_bounces_off_a_still_finger_never_gains) {
     ball.start_twist.linear = Vector3(-1.0, 0, 0);
     ball.start.position = Vector3(0.1, 0.003, 0);
     Simulation simulation(scene_of(ball), unfiltered());
-    double last = energy(simulation);
+    double last = kinetic_energy_of_cube(simulation);
     play(
         simulation, 0.0, 0.3, 1000.0,
         [](double) { return finger(Vector3(0, -0.02, 0), Vector3(0, 0.02, 0), kTipRadius); },
         [&](const Simulation& s) {
-          EXPECT_LE(energy(s), last * (1.0 + 1e-12));
-          last = energy(s);
+          EXPECT_LE(kinetic_energy_of_cube(s), last * (1.0 + 1e-12));
+          last = kinetic_energy_of_cube(s);
         });
     EXPECT_NEAR(object_twist(simulation).linear.x(), restitution, 0.02) << restitution;
   }
@@ -148,7 +137,7 @@ TEST(Appearing, a_hand_that_appears_inside_an_object_does_not_push_it_until_it_h
     return finger(Vector3(x, -0.01, 0), Vector3(x, 0.01, 0), kTipRadius);
   };
   play(simulation, 0.0, 1.0, 120.0, inside);
-  EXPECT_EQ(energy(simulation), 0.0);
+  EXPECT_EQ(kinetic_energy_of_cube(simulation), 0.0);
   // Out now; when it comes back it touches.
   play(simulation, 1.0 + 1.0 / 120, 1.5, 120.0, [](double t) {
     const double x = 0.12 - 0.3 * (t - 1.0);

@@ -11,27 +11,27 @@ using testing::kDegrees;
 using testing::PinchScene;
 using testing::smooth;
 
-constexpr double kHalf = 0.025;
-constexpr double kOverlap = 0.002;  // [m] on each side
-constexpr double kOpens = 1.5;      // [s]
-constexpr double kOpening = 0.3;    // speed of each fingertip [m/s]
+constexpr double kHalfWidth = 0.025;
+constexpr double kPressedBy = 0.002;  // [m] on each side
+constexpr double kOpens = 1.5;        // [s]
+constexpr double kOpening = 0.3;      // speed of each fingertip [m/s]
 
 /// A pinch that is carried at `velocity` from 0.8 s on (reached softly within half a second) and opens at
 /// kOpens. Returns the cube's twist when nothing touches it any more.
 Twist released(const Vector3& velocity, double rate, double step) {
   Configuration configuration = testing::implicit_configuration();
   configuration.step = step;
-  Simulation simulation(testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalf), 0.1)),
+  Simulation simulation(testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * kHalfWidth), 0.1)),
                         configuration);
   Vector3 way = Vector3::Zero();
   double last = 0.0;
   testing::play(simulation, 0.0, kOpens + 0.1, rate, [&](double t) {
     way += smooth(0.5 * (t + last) - 0.8, 0.5) * (t - last) * velocity;
     last = t;
-    const double gap = testing::closing_gap(t, kOverlap) + kOpening * std::max(0.0, t - kOpens);
+    const double gap = testing::closing_gap(t, kPressedBy) + kOpening * std::max(0.0, t - kOpens);
     Pose carried;
     carried.position = way;
-    return testing::moved(testing::symmetric_pinch(kHalf, gap), carried);
+    return testing::moved(testing::symmetric_pinch(kHalfWidth, gap), carried);
   });
   EXPECT_TRUE(simulation.result().contacts.empty());
   return testing::object_twist(simulation);
@@ -56,7 +56,7 @@ TEST(ImplicitRelease, a_symmetric_pinch_that_opens_leaves_the_cube_where_it_is) 
   for (const Input& input : kInputs) {
     const Twist twist = released(Vector3::Zero(), input.rate, input.step);
     EXPECT_LE(twist.linear.norm(), 0.005) << input.rate << " " << input.step;
-    EXPECT_LE(twist.angular.norm() * kHalf, 0.005) << input.rate << " " << input.step;
+    EXPECT_LE(twist.angular.norm() * kHalfWidth, 0.005) << input.rate << " " << input.step;
   }
 }
 

@@ -13,9 +13,9 @@ namespace {
 using testing::DraggedCube;
 using testing::kPrintedGain;
 
-constexpr double kHalf = DraggedCube::kHalf, kRadius = DraggedCube::kRadius, kCubeMass = DraggedCube::kMass,
-                 kContactStiffness = DraggedCube::kStiffness;
-constexpr double kDepth = 0.002, kRate = 1000.0;  // of the centroids, a step a frame
+constexpr double kHalf = DraggedCube::kHalf, kFingerRadius = DraggedCube::kRadius,
+                 kCubeMass = DraggedCube::kMass, kContactStiffness = DraggedCube::kStiffness;
+constexpr double kPressedBy = 0.002, kRate = 1000.0;  // of the centroids, a step a frame
 
 Configuration literal(bool on) {
   Configuration configuration = testing::unfiltered(ContactModelKind::seed);
@@ -50,7 +50,7 @@ struct Printed {
 
 TEST(SeedLiteral, computes_the_penetration_phase_as_printed) {
   Simulation simulation(testing::scene_of(DraggedCube::body()), literal(true));
-  const auto hand_at = [](double t) { return DraggedCube::hand(t, kDepth, kPrintedGain); };
+  const auto hand_at = [](double t) { return DraggedCube::hand(t, kPressedBy, kPrintedGain); };
   testing::play(simulation, 0.0, 0.55, kRate, hand_at);
   const BodyState start = simulation.state().bodies[0];
   Printed printed{start.pose.position.x(),
@@ -72,7 +72,7 @@ TEST(SeedLiteral, computes_the_penetration_phase_as_printed) {
   const Vector3& place = simulation.state().bodies[0].pose.position;
   EXPECT_NEAR(place.x(), printed.x, 1e-9);
   EXPECT_NEAR(place.z(), printed.z, 1e-9);
-  EXPECT_GT(slid, 2.0 * Material().static_friction * kDepth) << "it has left the cone";
+  EXPECT_GT(slid, 2.0 * Material().static_friction * kPressedBy) << "it has left the cone";
 }
 
 // phi f_t grows with the stretch: what slides is drawn harder the farther it has slid, and goes farther. Both
@@ -81,7 +81,7 @@ TEST(SeedLiteral, what_slides_is_drawn_farther_than_coulombs_law_would) {
   std::array<double, 2> moved{};
   for (const bool on : {true, false}) {
     Simulation simulation(testing::scene_of(DraggedCube::body()), literal(on));
-    const double depth = on ? kDepth : kDepth - kRadius, gain = on ? kPrintedGain : 1.0;
+    const double depth = on ? kPressedBy : kPressedBy - kFingerRadius, gain = on ? kPrintedGain : 1.0;
     testing::play(simulation, 0.0, 0.75, kRate, [&](double t) { return DraggedCube::hand(t, depth, gain); });
     moved[on ? 0 : 1] = simulation.state().bodies[0].pose.position.x();
     RecordProperty(on ? "as_printed_mm" : "as_read_mm", std::to_string(1e3 * moved[on ? 0 : 1]));
@@ -96,7 +96,7 @@ TEST(SeedLiteral, puts_the_hand_by_eq_1_as_printed) {
     configuration.filter.window = 3;
     Simulation simulation(testing::scene_of(DraggedCube::body()), configuration);
     testing::play(simulation, 0.0, 0.1, kRate, [](double) {
-      return testing::finger(Vector3(0.3, 0.0, 0.2), Vector3(0.3, 0.02, 0.2), kRadius);
+      return testing::finger(Vector3(0.3, 0.0, 0.2), Vector3(0.3, 0.02, 0.2), kFingerRadius);
     });
     const Vector3 expected = (on ? 4.0 / 3.0 : 1.0) * Vector3(0.3, 0.0, 0.2);
     EXPECT_LT((simulation.result().tracked.at(0).capsules[capsule_index(1, 3)].start - expected).norm(),
@@ -113,8 +113,9 @@ TEST(SeedLiteral, strikes_without_a_spin) {
   Simulation simulation(testing::scene_of(body), configuration);
   constexpr double kSpeed = 0.5;
   testing::play(simulation, 0.0, 0.12, kRate, [](double t) {
-    const double x = (-kHalf - kRadius - kSpeed * (0.1 - t)) / kPrintedGain;
-    return testing::finger({x, 0.015 / kPrintedGain, 0.005}, {x, 0.015 / kPrintedGain, -0.005}, kRadius);
+    const double x = (-kHalf - kFingerRadius - kSpeed * (0.1 - t)) / kPrintedGain;
+    return testing::finger({x, 0.015 / kPrintedGain, 0.005}, {x, 0.015 / kPrintedGain, -0.005},
+                           kFingerRadius);
   });
   EXPECT_NEAR(testing::object_twist(simulation).linear.x(), 1.5 * kSpeed, 1e-9);
   EXPECT_EQ(testing::object_twist(simulation).angular, Vector3(0, 0, 0));
