@@ -50,6 +50,7 @@ LinkageMotion::LinkageMotion(const Scene& scene, const Linkage& linkage)
       mass_(Matrix::Zero(linkage.unknowns(), linkage.unknowns())),
       factors_(linkage.unknowns()),
       composites_(linkage.bodies.size()),
+      impulses_(linkage.bodies.size()),
       carried_(linkage.bodies.size()) {
   for (int i = 0; i < size(); ++i) total_mass_ += body(i).mass;
 }
@@ -74,26 +75,40 @@ void LinkageMotion::place(const Pose& root, const Vector& positions) {
       placed.origin = frame.position;
       placed.pose = frame * joint_motion(on, position) * on.in_child.inverse();
       placed.pose.orientation.normalize();
+      placed.at_first = placed.velocity_at(at(0).pose.position);
     }
     const Matrix3 rotation = placed.pose.orientation.toRotationMatrix();
     placed.inertia = rotation * body(i).inertia * rotation.transpose();
   }
 }
 
-/// p += J' (P, L): projects an impulse P at the body's centre c and a moment L onto the joints, up the tree
-/// to the root. A joint at o with the unit twist S = (s, a) has s.P + a.(L + (c - o) x P). A free root at r
-/// has (P, L + (c - r) x P): momenta of the unknowns are about its own centre.
-void LinkageMotion::push(int body, const Vector3& impulse, const Vector3& moment,
-                         Eigen::Ref<Vector> momenta) const {
-  const Vector3& centre = at(body).pose.position;
-  for (int i = body; i != LinkageBody::kNone; i = linkage_.bodies[i].parent) {
-    if (linkage_.bodies[i].joint == LinkageBody::kNone) {
-      momenta.segment<3>(0) += impulse;
-      momenta.segment<3>(3) += moment + (centre - at(i).pose.position).cross(impulse);
-    } else {
-      momenta[linkage_.column(i)] += at(i).unit.linear.dot(impulse) +
-                                     at(i).unit.angular.dot(moment + (centre - at(i).origin).cross(impulse));
-    }
+LinkageMotion::Impulse LinkageMotion::about_first(int body, const Impulse& impulse) const {
+  const Vector3 arm = at(body).pose.position - at(0).pose.position;
+  return {impulse.linear, impulse.moment + arm.cross(impulse.linear)};
+}
+
+/// p += J' (P, L). A joint with the unit twist (s, a) about the first body's centre has s.P + a.L. A free root
+/// is the first body, with (P, L).
+void LinkageMotion::add_momentum(int body, const Impulse& impulse, Eigen::Ref<Vector> momenta) const {
+  if (linkage_.bodies[body].joint == LinkageBody::kNone) {
+    momenta.segment<3>(0) += impulse.linear;
+    momenta.segment<3>(3) += impulse.moment;
+  } else {
+    const Placed& placed = at(body);
+    momenta[linkage_.column(body)] +=
+        placed.at_first.dot(impulse.linear) + placed.unit.angular.dot(impulse.moment);
+  }
+}
+
+/// From the leaves inwards: a joint transmits the impulses on its body and on all below it.
+void LinkageMotion::push(Eigen::Ref<Vector> momenta) {
+  for (int i = 0; i < size(); ++i) impulses_[i] = about_first(i, impulses_[i]);
+  for (int i = size() - 1; i >= 0; --i) {
+    add_momentum(i, impulses_[i], momenta);
+    const int parent = linkage_.bodies[i].parent;
+    if (parent == LinkageBody::kNone) continue;
+    impulses_[parent].linear += impulses_[i].linear;
+    impulses_[parent].moment += impulses_[i].moment;
   }
 }
 
@@ -147,7 +162,9 @@ void LinkageMotion::weigh() {
     const Vector3 arm = moved.centre - placed.pose.position;
     const auto fill = [&](int column, const Vector3& velocity, const Vector3& spin) {
       const Vector3 impulse = moved.mass * velocity;
-      push(i, impulse, moved.inertia * spin + arm.cross(impulse), mass_.col(column));
+      const Impulse about = about_first(i, {impulse, moved.inertia * spin + arm.cross(impulse)});
+      for (int above = i; above != LinkageBody::kNone; above = linkage_.bodies[above].parent)
+        add_momentum(above, about, mass_.col(column));
     };
     if (link.joint == LinkageBody::kNone) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -165,7 +182,7 @@ void LinkageMotion::weigh() {
 /// From the root outwards: each body moves with its parent, and by its joint.
 ///
 ///     w = w_p + q' a,     v = v_p + w_p x (c - c_p) + q' (s + a x (c - o))
-void LinkageMotion::move(const Vector& velocity) {
+void LinkageMotion::move(const Eigen::Ref<const Vector>& velocity) {
   for (int i = 0; i < size(); ++i) {
     Placed& placed = placed_[i];
     const LinkageBody& link = linkage_.bodies[i];

@@ -45,6 +45,7 @@ class LinkageMotion {
     Pose pose;                // of the body
     Twist unit;               // of its joint, world axes: twist at `origin` for unit velocity
     Vector3 origin;           // of its joint, world
+    Vector3 at_first;         // velocity of a point at the first body's centre, for unit velocity of its joint
     Matrix3 inertia;          // world axes
     Vector3 linear, angular;  // velocity
     /// Velocity of a point of the body for unit velocity of its joint alone.
@@ -60,9 +61,15 @@ class LinkageMotion {
   /// Multiplies by its inverse, in place: momenta of the unknowns become their velocities.
   void solve(Vector& momenta) const { factors_.solveInPlace(momenta); }
   /// Computes the bodies' velocities from those of the unknowns.
-  void move(const Vector& velocity);
-  /// Adds the momenta of the unknowns for an impulse and its moment about the body's centre.
-  void push(int body, const Vector3& impulse, const Vector3& moment, Eigen::Ref<Vector> momenta) const;
+  void move(const Eigen::Ref<const Vector>& velocity);
+  /// An impulse at a body's centre, and its moment about it.
+  struct Impulse {
+    Vector3 linear, moment;
+  };
+  /// Input of push(), by body.
+  std::vector<Impulse>& impulses() { return impulses_; }
+  /// Adds the momenta of the unknowns for impulses(), which become sums of subtrees.
+  void push(Eigen::Ref<Vector> momenta);
   /// Writes a body's Jacobian: velocity of its centre and angular velocity, a column for each unknown. Rows
   /// must be zero before.
   void add_jacobian(int body, Eigen::Ref<Matrix> six_rows) const;
@@ -78,6 +85,11 @@ class LinkageMotion {
   Vector3 centre_of_mass() const;
 
  private:
+  /// Moment about the first body's centre.
+  Impulse about_first(int body, const Impulse& impulse) const;
+  /// Adds the momentum that an impulse about the first body's centre gives a body's own unknowns.
+  void add_momentum(int body, const Impulse& impulse, Eigen::Ref<Vector> momenta) const;
+
   const Scene& scene_;
   const Linkage& linkage_;
   std::vector<Placed> placed_;
@@ -91,6 +103,7 @@ class LinkageMotion {
     void join(const Composite& other);
   };
   std::vector<Composite> composites_;
+  std::vector<Impulse> impulses_;
   struct Carried {  // by a joint, about the world's origin
     double mass;
     Vector3 momentum, angular_momentum, mass_moment;

@@ -168,8 +168,9 @@ void LinkageFlight::gather(const Vector3& drift, const std::vector<BodyState>& b
   velocity_.setZero();
   for (int i = 0; i < motion_.size(); ++i) {
     const BodyState& state = of(linkage_, i, bodies);
-    motion_.push(i, state.linear_momentum - motion_.body(i).mass * drift, state.angular_momentum, velocity_);
+    motion_.impulses()[i] = {state.linear_momentum - motion_.body(i).mass * drift, state.angular_momentum};
   }
+  motion_.push(velocity_);
   now_.momenta = velocity_.tail(now_.momenta.size());
 }
 

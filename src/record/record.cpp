@@ -111,7 +111,7 @@ ObjectRequest request_in(const YAML::Node& node, const RecordedFiles& files) {
   if (node["urdf"]) {
     const RecordedFile* file = text::find_named(files, text_in(node, "urdf"));
     if (file == nullptr) refuse("the URDF of '" + text::one_line(request.name, 60) + "' is missing");
-    request.urdf = file->bytes;
+    request.urdf = file->bytes();
   } else {
     request.shape = text_in(node, "shape");
     request.size = numbers_in(node["size"], 0);
@@ -230,9 +230,9 @@ Scene scene_of_files(const World& world, const SceneOptions& options, const std:
   const RecordedFile* urdf = text::find_named(world.files, kUrdf);
   if (urdf == nullptr) throw SceneError("the recording has no scene.urdf; allowed: one that has");
   const fs::path file = fs::path(folder) / (world.scene + ".urdf");
-  write_file(file, urdf->bytes);
+  write_file(file, urdf->bytes());
   if (const RecordedFile* yaml = text::find_named(world.files, kYaml))
-    write_file(fs::path(folder) / (world.scene + ".yaml"), yaml->bytes);
+    write_file(fs::path(folder) / (world.scene + ".yaml"), yaml->bytes());
   return load_scene(file.string(), options);
 }
 
@@ -254,7 +254,7 @@ std::map<std::string, std::string> written_to(const std::string& folder, const R
   const auto path_of = [&](const RecordedFile& file) { return base / path_below(file.name); };
   const auto is_other = [&](const RecordedFile& file) {
     return fs::exists(path_of(file)) &&
-           file_text(path_of(file).string(), file.bytes.size() + 1) != file.bytes;
+           file_text(path_of(file).string(), file.bytes().size() + 1) != file.bytes();
   };
   int i = 0;
   do {
@@ -264,7 +264,7 @@ std::map<std::string, std::string> written_to(const std::string& folder, const R
   std::map<std::string, std::string> paths;
   for (const RecordedFile& file : files) {
     fs::create_directories(path_of(file).parent_path());
-    write_file(path_of(file).string(), file.bytes);
+    write_file(path_of(file).string(), file.bytes());
     paths[file.name] = path_of(file).string();
   }
   return paths;

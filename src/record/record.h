@@ -17,8 +17,17 @@
 
 namespace mrhi {
 /// A file by content. `name`: scene.urdf or scene.yaml, spawn/NAME.urdf, or as a URDF names its mesh.
-struct RecordedFile {
-  std::string name, bytes;
+/// Copies share the bytes, which may be many.
+class RecordedFile {
+ public:
+  RecordedFile(std::string file_name, std::string bytes)
+      : name(std::move(file_name)), bytes_(std::make_shared<const std::string>(std::move(bytes))) {}
+  const std::string& bytes() const { return *bytes_; }
+
+  std::string name;
+
+ private:
+  std::shared_ptr<const std::string> bytes_;
 };
 using RecordedFiles = std::vector<RecordedFile>;
 

@@ -93,7 +93,7 @@ class Overrides {
     const std::string file = scene_file(arguments_);
     World given = world_of_file(file, load_scene(file, scene_options({})), Configuration());
     const auto same = [](const RecordedFile& a, const RecordedFile& b) {
-      return a.name == b.name && a.bytes == b.bytes;
+      return a.name == b.name && a.bytes() == b.bytes();
     };
     if (given.files.size() <= world.files.size() &&
         std::equal(given.files.begin(), given.files.end(), world.files.begin(), same))

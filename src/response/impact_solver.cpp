@@ -18,6 +18,8 @@ constexpr std::size_t kMaxSmallIslandLinks = 16;
 /// Number of points that all sweeps of a large island's impact relax together, and the least number of
 /// sweeps.
 constexpr int kLargeIslandWork = 1500, kMinLargeIslandSweeps = 8;
+/// Joint velocities that all sweeps of an impact of linkages change together.
+constexpr Eigen::Index kLinkageWork = 200'000;
 /// Slowest approach that is an impact in a large island [m/s].
 constexpr double kMinImpactSpeed = 1e-3;
 /// Impulses diverge if their sum exceeds this multiple of the largest sum that the impacts can need. Each
@@ -164,6 +166,8 @@ void ImpactSolver::resolve(ContactStep& step, const Island& island, ImpactFricti
   velocity_ = problem.start();
   collect_in_joints(step, island, joints);
   if (points_.empty()) return;
+  const Eigen::Index sweep = velocity_.size() * static_cast<Eigen::Index>(points_.size());
+  limits_.max_sweeps = static_cast<int>(std::min<Eigen::Index>(limits_.max_sweeps, kLinkageWork / sweep));
   if (has_persistent_hand_contact(step, island)) {
     problem.solve();
     drop_separating(step, [&problem](const ImpactPoint& point) -> Vector3 {

@@ -51,6 +51,7 @@ void IslandProblem::begin(const ContactStep& step, const Island& island, const s
   step_ = step.step;
   usual_ = usual;
   scene_ = &step.scene;
+  island_ = &island;
   acts_ = is_touched(step, island);
   effort_ = effort_in_joints();
   make_rows(step, island);
@@ -71,7 +72,7 @@ IslandProblem::Effort IslandProblem::effort_in_joints() const {
   if (wrenches_.size() <= kMaxUnboundedBodies) return effort;
   effort.iterations = 12;
   effort.limits = 1;
-  effort.held_iterations = 16;
+  effort.held_iterations = 10;
   effort.unchecked = 0;
   effort.trials = 10;
   effort.converged = 1e-6;
@@ -93,7 +94,7 @@ void IslandProblem::number_unknowns(const ContactStep& step, const Island& islan
   for (Vector* vector : {&gradient_, &fall_, &weights_}) vector->setZero(count);
   for (Vector* vector : {&direction_, &change_, &momentum_}) vector->resize(count);
   unknowns_.clear();
-  mass_blocks_.clear();
+  parts_.clear();
   columns_.resize(island.bodies.size());
   Eigen::Index first = 0;
   for (std::size_t i = 0; i < linkages.size(); ++i) {
@@ -117,14 +118,20 @@ void IslandProblem::add_linkage(const ContactStep& step, const Island& island, c
                                 LinkageMotion& motion, Eigen::Index first) {
   const Eigen::Index count = linkage.unknowns();
   mass_.block(first, first, count, count) = motion.mass();
-  mass_blocks_.push_back({first, count});
-  auto momenta = gradient_.segment(first, count), fall = fall_.segment(first, count);
+  parts_.push_back({{first, count}, &motion, &linkage, 0});
+  std::vector<LinkageMotion::Impulse>& impulses = motion.impulses();
+  for (int i = 0; i < motion.size(); ++i) {
+    const BodyState& state = step.bodies[linkage.bodies[i].body];
+    impulses[i] = {state.linear_momentum, state.angular_momentum};
+  }
+  motion.push(gradient_.segment(first, count));
+  for (int i = 0; i < motion.size(); ++i)
+    impulses[i] = {(step_ * motion.body(i).mass) * step.gravity, Vector3::Zero()};
+  motion.push(fall_.segment(first, count));
   for (int i = 0; i < motion.size(); ++i) {
     const LinkageBody& link = linkage.bodies[i];
     const Body& body = motion.body(i);
     const auto index = static_cast<std::size_t>(link.body);
-    motion.push(i, step.bodies[index].linear_momentum, step.bodies[index].angular_momentum, momenta);
-    motion.push(i, (step_ * body.mass) * step.gravity, Vector3::Zero(), fall);
     columns_[island.place_of(index)] = {first, count};
     motion.add_jacobian(i, jacobian_.block(6 * island.place_of(index), first, 6, count));
     if (link.joint == LinkageBody::kNone) {
@@ -144,9 +151,10 @@ void IslandProblem::add_body_without_joint(const ContactStep& step, const Island
   const Body& body = step.scene.bodies[index];
   const BodyState& state = step.bodies[index];
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
-  columns_[island.place_of(index)] = {first, 6};
-  mass_blocks_.push_back({first, 6});
-  jacobian_.block<6, 6>(6 * island.place_of(index), first).setIdentity();
+  const int number = island.place_of(index);
+  columns_[number] = {first, 6};
+  parts_.push_back({{first, 6}, nullptr, nullptr, number});
+  jacobian_.block<6, 6>(6 * number, first).setIdentity();
   mass_.block<3, 3>(first, first).diagonal().setConstant(body.mass);
   mass_.block<3, 3>(first + 3, first + 3) = rotation * body.inertia * rotation.transpose();
   gradient_.segment<6>(first) << state.linear_momentum, state.angular_momentum;
@@ -183,11 +191,17 @@ void IslandProblem::start_with(const Vector& velocity, const ContactStep& step,
 /// scale: contact and joint forces, plus a little of the momentum, so that a relative error exists where no
 /// force acts.
 void IslandProblem::add_joint_forces() {
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(6 * i);
-    const auto [first, count] = columns_[i];
-    gradient_.segment(first, count).noalias() +=
-        jacobian_.block(row, first, 6, count).transpose() * body_impulse_.segment<6>(row);
+  for (const Part& part : parts_) {
+    auto momenta = gradient_.segment(part.columns.first, part.columns.count);
+    if (part.motion == nullptr) {
+      momenta += body_impulse_.segment<6>(6 * part.number);
+      continue;
+    }
+    for (int i = 0; i < part.motion->size(); ++i) {
+      const int row = 6 * island_->place_of(part.linkage->bodies[i].body);
+      part.motion->impulses()[i] = {body_impulse_.segment<3>(row), body_impulse_.segment<3>(row + 3)};
+    }
+    part.motion->push(momenta);
   }
   scale_ += kMomentumTolerance * carried_;
   for (const auto& [joint, body, row] : unknowns_) {
@@ -197,13 +211,18 @@ void IslandProblem::add_joint_forces() {
   }
 }
 
-/// V = J u, by the unknowns that move each body.
+/// V = J u, from parent to child.
 void IslandProblem::find_body_velocities() {
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(6 * i);
-    const auto [first, count] = columns_[i];
-    body_velocity_.segment<6>(row).noalias() =
-        jacobian_.block(row, first, 6, count) * velocity_.segment(first, count);
+  for (const Part& part : parts_) {
+    const auto velocity = velocity_.segment(part.columns.first, part.columns.count);
+    if (part.motion == nullptr) {
+      body_velocity_.segment<6>(6 * part.number) = velocity;
+      continue;
+    }
+    part.motion->move(velocity);
+    for (int i = 0; i < part.motion->size(); ++i)
+      body_velocity_.segment<6>(6 * island_->place_of(part.linkage->bodies[i].body))
+          << part.motion->at(i).linear, part.motion->at(i).angular;
   }
 }
 

@@ -279,10 +279,11 @@ void IslandProblem::multiply_mass(const Vector& by, Vector& result) const {
     return;
   }
   if (in_joints_) {
-    for (const Columns& block : mass_blocks_)
-      result.segment(block.first, block.count).noalias() =
-          mass_.block(block.first, block.first, block.count, block.count) *
-          by.segment(block.first, block.count);
+    for (const Part& part : parts_) {
+      const auto [first, count] = part.columns;
+      result.segment(first, count).noalias() =
+          mass_.block(first, first, count, count) * by.segment(first, count);
+    }
     return;
   }
   result.head<3>() = one_.mass * by.head<3>();

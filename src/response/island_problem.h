@@ -254,10 +254,17 @@ class IslandProblem {
   double usual_ = 0.0, carried_ = 0.0;
   const Scene* scene_ = nullptr;
   std::vector<Unknown> unknowns_;
-  std::vector<JointLaw> laws_;        // by row; used for joints
-  std::vector<Columns> columns_;      // by body
-  std::vector<Columns> mass_blocks_;  // unknowns of each linkage, and of each body without a joint
-  Matrix jacobian_;                   // of the bodies by the unknowns
+  std::vector<JointLaw> laws_;    // by row; used for joints
+  std::vector<Columns> columns_;  // by body
+  struct Part {                   // a linkage, or a body without a joint
+    Columns columns;
+    LinkageMotion* motion;  // null for a body without a joint
+    const Linkage* linkage;
+    int number;  // of a body without a joint
+  };
+  std::vector<Part> parts_;
+  const Island* island_ = nullptr;
+  Matrix jacobian_;  // of the bodies by the unknowns
   PointJacobian point_jacobian_, point_product_;
   Eigen::RowVectorXd spin_jacobian_;
   Factors mass_factors_;

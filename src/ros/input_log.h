@@ -159,7 +159,7 @@ class InputLog {
     for (const RecordedFile& file : files) {
       message.files.emplace_back();
       message.files.back().name = file.name;
-      message.files.back().bytes = bytes_of(file.bytes);
+      message.files.back().bytes = bytes_of(file.bytes());
     }
   }
 
