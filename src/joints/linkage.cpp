@@ -87,8 +87,8 @@ LinkageMotion::Impulse LinkageMotion::about_first(int body, const Impulse& impul
   return {impulse.linear, impulse.moment + arm.cross(impulse.linear)};
 }
 
-/// p += J' (P, L). A joint with the unit twist (s, a) about the first body's centre has s.P + a.L. A free root
-/// is the first body, with (P, L).
+/// p += J' (P, L). A joint with the unit twist (s, a) about the first body's centre has s.P + a.L. A free
+/// root is the first body, with (P, L).
 void LinkageMotion::add_momentum(int body, const Impulse& impulse, Eigen::Ref<Vector> momenta) const {
   if (linkage_.bodies[body].joint == LinkageBody::kNone) {
     momenta.segment<3>(0) += impulse.linear;

@@ -42,11 +42,11 @@ class LinkageMotion {
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
   struct Placed {
-    Pose pose;                // of the body
-    Twist unit;               // of its joint, world axes: twist at `origin` for unit velocity
-    Vector3 origin;           // of its joint, world
-    Vector3 at_first;         // velocity of a point at the first body's centre, for unit velocity of its joint
-    Matrix3 inertia;          // world axes
+    Pose pose;         // of the body
+    Twist unit;        // of its joint, world axes: twist at `origin` for unit velocity
+    Vector3 origin;    // of its joint, world
+    Vector3 at_first;  // velocity of a point at the first body's centre, for unit velocity of its joint
+    Matrix3 inertia;   // world axes
     Vector3 linear, angular;  // velocity
     /// Velocity of a point of the body for unit velocity of its joint alone.
     Vector3 velocity_at(const Vector3& p) const { return unit.linear + unit.angular.cross(p - origin); }

@@ -222,7 +222,8 @@ void IslandProblem::find_body_velocities() {
     part.motion->move(velocity);
     for (int i = 0; i < part.motion->size(); ++i)
       body_velocity_.segment<6>(6 * island_->place_of(part.linkage->bodies[i].body))
-          << part.motion->at(i).linear, part.motion->at(i).angular;
+          << part.motion->at(i).linear,
+          part.motion->at(i).angular;
   }
 }
 

@@ -136,12 +136,22 @@ class InputLog {
     publish(SimulationInput::SILENCE, [&](SimulationInput& input) { input.time = time; });
   }
 
-  void change(const Change& change) {
+  using SimulationInput = mr_hand_interaction::SimulationInput;
+
+  void change(const Change& change) { send(noted(change), {}); }
+  /// Notes a change that has files. Its input, without them, is for send().
+  SimulationInput noted(const Change& change) {
     note(change, simulation_, world_);
-    publish(SimulationInput::CHANGE, [&](SimulationInput& input) {
-      input.text = to_yaml(change);
-      add(files_of(change), input);
-    });
+    ++sequence_;
+    SimulationInput input = message(SimulationInput::CHANGE);
+    input.text = to_yaml(change);
+    return input;
+  }
+  /// From any thread, as files may be large: readers sort by sequence.
+  void send(SimulationInput input, const RecordedFiles& files) const {
+    if (publisher_.getNumSubscribers() == 0) return;
+    add(files, input);
+    publisher_.publish(input);
   }
 
   void lost(std::uint64_t frames) { lost_ = frames; }
@@ -149,8 +159,6 @@ class InputLog {
   std::uint64_t sequence() const { return sequence_; }
 
  private:
-  using SimulationInput = mr_hand_interaction::SimulationInput;
-
   static constexpr int kQueue = 1000;
 
   static std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }

@@ -339,10 +339,14 @@ struct InteractionServer::Impl {
     const Scene& part = spawn.prepared->part;
     require_no_frames(part, fixed_frame_);
     if (!spawn.request.whole) spawn.request.name = part.bodies.front().name;
+    InputLog::SimulationInput input;
+    const Change change = spawn;
     between_frames_.run([&] {
-      make(spawn);
+      mrhi::make(change, live_);
+      input = log_.noted(change);
       show_change();
     });
+    log_.send(std::move(input), files_of(change));
     std::vector<std::string> names;
     for (const Body& body : part.bodies) names.push_back("'" + body.name + "'");
     std::string text = text::joined(names) + (names.size() > 1 ? " are there" : " is there");
@@ -381,7 +385,7 @@ struct InteractionServer::Impl {
     return text::joined(now);
   }
 
-  /// Applies and logs a change of the simulation. All changes use this function.
+  /// Applies and logs a change of the simulation. All changes but spawn() use this function.
   void make(const Change& change) {
     mrhi::make(change, live_);
     log_.change(change);

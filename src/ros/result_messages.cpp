@@ -27,24 +27,21 @@ bool is_felt(const Contact& contact) {
   return contact.touching() || !contact.impulse.isZero(0.0) || !contact.force.isZero(0.0);
 }
 
-bool same_phalanx(const Contact& a, const Contact& b) {
-  return a.key.body == b.key.body && a.key.hand == b.key.hand && a.key.capsule == b.key.capsule;
-}
-
 /// Sums the contacts of each phalanx with each body. They are sorted by body, then by hand and phalanx.
 void add_phalanges(int slot, const Scene& scene, const std::vector<Contact>& contacts,
                    std::vector<msg::PhalanxHaptics>& phalanges) {
   for (auto contact = contacts.begin(); contact != contacts.end();) {
     const auto first = contact;
     Vector3 force = Vector3::Zero(), impulse = Vector3::Zero(), normals = Vector3::Zero();
-    double depth = 0.0;
+    double depth = 0.0, peak = 0.0;
     bool felt = false, slips = false;
-    for (; contact != contacts.end() && same_phalanx(*first, *contact); ++contact) {
+    for (; contact != contacts.end() && first->key.same_phalanx(contact->key); ++contact) {
       if (first->key.hand != slot || !is_felt(*contact)) continue;
       force += contact->force;
       impulse += contact->impulse;
       normals += contact->normal;
       depth = std::max(depth, contact->depth);
+      peak = std::max(peak, contact->peak_force);
       slips = slips || (contact->touching() && contact->friction != Friction::sticking);
       felt = true;
     }
@@ -60,6 +57,7 @@ void add_phalanges(int slot, const Scene& scene, const std::vector<Contact>& con
     phalanx.normal = vector_message(normal);
     phalanx.pressure = std::max(0.0, -normal.dot(force));
     phalanx.depth = depth;
+    phalanx.peak_force = std::max(peak, force.norm());
   }
 }
 
@@ -170,6 +168,7 @@ msg::ContactArray contacts_message(const Outcome& outcome, const std_msgs::Heade
     entry.normal_force = use.normal;
     entry.tangential_force = use.tangential;
     entry.friction_limit = use.limit;
+    entry.peak_force = contact.peak_force;
   }
   return message;
 }

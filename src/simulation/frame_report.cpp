@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "../rendering/mass_lag.h"
 #include "../response/finger_limits.h"
@@ -47,6 +48,7 @@ void add_transfer(const FrameTransfer& transfer, std::vector<Contact>& contacts)
     }
     same->impulse = moved.impulse;
     same->force = rate * moved.force;
+    same->peak_force = moved.peak_force;
   }
   if (contacts.size() > touching) {
     std::sort(contacts.begin(), contacts.end(),
@@ -111,7 +113,8 @@ void Simulation::Impl::find_final_contacts() {
   contacts = state.contacts;
   neighbours.begin_step(state.bodies, 0.0);
   finder.find(hands, neighbours, state.bodies, 0.0, contacts);
-  for (Contact& contact : contacts) contact.impulse.setZero(), contact.force.setZero();
+  for (Contact& contact : contacts)
+    contact.impulse.setZero(), contact.force.setZero(), contact.peak_force = 0.0;
   contacts.erase(
       std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.touching(); }),
       contacts.end());
@@ -212,17 +215,28 @@ void FrameTransfer::add(const SimulationState& after, double step) {
       same->force += step * grip.force;
     }
   }
-  for (const Contact& contact : after.contacts) {
-    if (contact.impulse.isZero(0.0) && contact.force.isZero(0.0)) continue;
-    auto known = std::lower_bound(contacts.begin(), contacts.end(), contact.key, before);
-    if (known == contacts.end() || !(known->key == contact.key)) {
-      known = contacts.insert(known, contact);
-      known->force *= step;
-    } else {
-      known->impulse += contact.impulse;
-      known->force += step * contact.force;
-    }
+  for (auto contact = after.contacts.begin(); contact != after.contacts.end();) {
+    const auto end = std::find_if(contact, after.contacts.end(), [&](const Contact& other) {
+      return !contact->key.same_phalanx(other.key);
+    });
+    const auto plus = [](const Vector3& sum, const Contact& one) -> Vector3 { return sum + one.force; };
+    const double force = std::accumulate(contact, end, Vector3(Vector3::Zero()), plus).norm();
+    for (; contact != end; ++contact) add(*contact, step, force);
   }
+}
+
+/// `force`: of all contacts of its phalanx with the body [N].
+void FrameTransfer::add(const Contact& contact, double step, double force) {
+  if (contact.impulse.isZero(0.0) && contact.force.isZero(0.0)) return;
+  auto known = std::lower_bound(contacts.begin(), contacts.end(), contact.key, before);
+  if (known == contacts.end() || !(known->key == contact.key)) {
+    known = contacts.insert(known, contact);
+    known->force *= step;
+  } else {
+    known->impulse += contact.impulse;
+    known->force += step * contact.force;
+  }
+  known->peak_force = std::max(known->peak_force, force);
 }
 
 void Simulation::Impl::end_interactions(std::size_t slot, Nanoseconds now) {

@@ -29,6 +29,9 @@ struct FrameTransfer {
   void clear() { contacts.clear(), assists.clear(), seconds = 0.0; }
   /// Adds the transfer of a step of `step` seconds.
   void add(const SimulationState& after, double step);
+
+ private:
+  void add(const Contact& contact, double step, double force);
 };
 
 /// Frames come in, are divided into steps, and each step runs through the stages (simulation_frames.cpp);

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "support/grips.h"
 #include "support/pinch_ride.h"
 #include "support/tessellated.h"
@@ -130,6 +132,32 @@ TEST(TrackerRate, the_forces_of_a_frame_are_the_momentum_given_in_it_over_its_ti
       before = now;
     }
   }
+}
+
+TEST(TrackerRate, a_frames_peak_of_a_phalanx_is_its_largest_force_in_one_of_the_steps) {
+  const PinchScene pinch;
+  Simulation simulation(pinch.scene(), configuration_of(HandStrength::of_a_person(), FilterKind::none));
+  int pressed = 0;
+  for (int frame = 0; frame < 120; ++frame) {
+    const double t = frame / 60.0;
+    simulation.begin({testing::at(t), {pinch.hand(t, smooth(t - 0.5, 0.5) * swing(t - 0.5, 0.05, kShake))}});
+    std::map<int, double> largest;  // by phalanx
+    while (simulation.step()) {
+      std::map<int, Vector3> forces;
+      for (const Contact& contact : simulation.state().contacts)
+        forces.try_emplace(contact.key.capsule, Vector3::Zero()).first->second += contact.force;
+      for (const auto& [phalanx, force] : forces)
+        largest[phalanx] = std::max(largest[phalanx], force.norm());
+    }
+    std::map<int, double> reported;
+    for (const Contact& contact : simulation.end().contacts)
+      reported[contact.key.capsule] = std::max(reported[contact.key.capsule], contact.peak_force);
+    for (const auto& [phalanx, force] : largest) {
+      EXPECT_DOUBLE_EQ(reported[phalanx], force) << t << " s";
+      if (force > 0.0) ++pressed;
+    }
+  }
+  EXPECT_GT(pressed, 100);
 }
 
 /// How far a cube of 0.1 kg between two fingers is off its place in the hand after it was shaken with `share`

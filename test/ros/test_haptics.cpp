@@ -49,6 +49,7 @@ TEST(Haptics, points_of_one_phalanx_on_one_object_are_added) {
   felt.contacts[1].friction = Friction::slipping;
   felt.contacts[1].depth = 0.003;
   felt.contacts[0].impulse = {0, 0, -0.01};
+  felt.contacts[1].peak_force = 5.0;
   const HapticsArray message = felt.message();
   ASSERT_EQ(message.hands[0].phalanges.size(), 1u);
   const PhalanxHaptics& phalanx = message.hands[0].phalanges[0];
@@ -59,6 +60,7 @@ TEST(Haptics, points_of_one_phalanx_on_one_object_are_added) {
   EXPECT_DOUBLE_EQ(phalanx.force.z, -3.0);
   EXPECT_DOUBLE_EQ(phalanx.pressure, 3.0);  // normals along z
   EXPECT_DOUBLE_EQ(phalanx.impulse.z, -0.01);
+  EXPECT_DOUBLE_EQ(phalanx.peak_force, 5.0);
   EXPECT_DOUBLE_EQ(phalanx.depth, 0.003);
   EXPECT_EQ(phalanx.slip, PhalanxHaptics::SLIPPING);
 }
@@ -85,6 +87,7 @@ TEST(Haptics, a_touch_that_has_ended_within_the_frame_is_felt_by_its_mean_force)
   const HapticsArray message = felt.message();
   ASSERT_EQ(message.hands[0].phalanges.size(), 1u);
   EXPECT_EQ(message.hands[0].phalanges[0].force.z, -2.0);
+  EXPECT_EQ(message.hands[0].phalanges[0].peak_force, 2.0);  // at least
 }
 
 TEST(Haptics, another_hands_contacts_are_not_felt) {

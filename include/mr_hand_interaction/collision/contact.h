@@ -20,6 +20,7 @@ struct ContactKey {
   friend bool operator<(const ContactKey& a, const ContactKey& b) { return a.order() < b.order(); }
   friend bool operator==(const ContactKey& a, const ContactKey& b) { return a.order() == b.order(); }
   bool same_pair(const ContactKey& other) const { return order() >> 8 == other.order() >> 8; }
+  bool same_phalanx(const ContactKey& other) const { return order() >> 16 == other.order() >> 16; }
   std::uint64_t order() const {
     return std::uint64_t(point) | (std::uint64_t(shape) << 8) | (std::uint64_t(capsule) << 16) |
            (std::uint64_t(hand) << 24) | (std::uint64_t(body) << 32);
@@ -77,6 +78,7 @@ struct Contact : ContactMemory {
   Vector3 impulse = Vector3::Zero();           ///< of an impact in this step [N s]
   double time_of_impact = 0.0;                 ///< of that impact, from the start of the step [s]
   double torque = 0.0;                         ///< about n, of the soft finger [N m]
+  double peak_force = 0.0;  ///< of a frame's report: its phalanx's largest force in one of the steps [N]
 };
 
 }  // namespace mrhi
