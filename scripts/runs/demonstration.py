@@ -137,7 +137,8 @@ def _object(table, contacts, step):
     body.held[place] = rows['held'].to_numpy()
     force = mean_forces(touches, step[contact_place])
     arm = vectors(touches, ('x', 'y', 'z')) - body.pose[contact_place, :3]
-    body.wrench = summed(contact_place, numpy.hstack([force, numpy.cross(arm, force)]), len(step))
+    by_pad = touches['torque'].to_numpy()[:, None] * vectors(touches, ('nx', 'ny', 'nz'))
+    body.wrench = summed(contact_place, numpy.hstack([force, numpy.cross(arm, force) + by_pad]), len(step))
     return body
 
 

@@ -19,6 +19,7 @@ ASSIST_END = 0.15  # s; an assist that was active until this long before the end
 MIN_SPEED_GAIN = 0.02  # m/s; of a touch that is reported
 MAX_BREAK = 0.06  # s; touches with a shorter break are one stay
 BEFORE_LOSS = 0.15  # s from a picture to the loss
+MAX_CHANGES = 10  # that a text names
 SLIDE_MARGIN = 0.03  # s, by which an opening may begin after all fingers slide
 
 # Events that end a hold whatever the fingers do: kind, cause, sentence.
@@ -120,6 +121,9 @@ def _cause_of(stay, loss, first_slid, story):
             impact.by, impact.time, impact.speed), {'by': impact.by}
     if evidence.was_unseen(stay):
         return 'tracking_lost', 'the tracker did not see the hand, which kept its pose', {}
+    changes = evidence.changes_before(end if loss.grasp_end is None else min(end, loss.grasp_end), story)
+    if changes:
+        return 'changed', 'the running scene was changed shortly before, at %s' % _changes_text(changes), {}
     if obstacle:
         return 'blocked', 'a fixture or another object held it back with %.3g N while the hand moved on at %.3g m/s' % obstacle, {}
     if loss.assistance and loss.assistance.until > end - ASSIST_END:
@@ -132,6 +136,11 @@ def _cause_of(stay, loss, first_slid, story):
         return 'wrong_faces', 'no two fingers opposed each other within friction (%s), so that no force could hold it' % (
             _faces_text(stay)), {}
     return _weakness(stay, loss, slid) + ({},)
+
+
+def _changes_text(changes):
+    earlier = len(changes) - MAX_CHANGES
+    return '; '.join(changes[-MAX_CHANGES:]) + (' (and %d earlier)' % earlier if earlier > 0 else '')
 
 
 def _weakness(stay, loss, slid):

@@ -14,6 +14,7 @@ MIN_OPENING = 0.003  # m; mean distance of the fingertips from their centre, ove
 MIN_BEGUN = 0.001  # m; smallest opening while the fingers still touch
 CLEAR = 0.1  # fraction of the opening at which the hand counts as open
 CATCH = 0.03  # s; fingers that stick for a shorter time still slide
+CHANGE_REACH, CHANGE_DIGIT = 0.2, 0.0005  # s from a change of the scene to the loss that it causes; to which its time is rounded
 SPAN = 0.02  # s before and after, for the palm's acceleration
 
 Impact = collections.namedtuple('Impact', 'by time speed')
@@ -69,6 +70,11 @@ def was_unseen(stay):
     """True if the tracker did not see the hand at the last touch."""
     hand = stay.hand
     return bool(hand.lost[numpy.abs(hand.time - stay.time(stay.touched)) < 1e-6].any())
+
+
+def changes_before(end, story):
+    """Texts of the changes of the running scene up to CHANGE_REACH before a hold's end [s], or with it."""
+    return [change.text for change in story.changes if end - CHANGE_REACH <= change.time <= end + CHANGE_DIGIT]
 
 
 def obstacle_of(stay, gravity, slid, load):

@@ -1,6 +1,7 @@
 """A run, from its tables: objects with their samples, hands, joints and events."""
 
 import collections
+import re
 
 import numpy
 
@@ -15,6 +16,7 @@ KIND_OF_GRASP, KIND_OF_GRASP_END = 'GRASP_BEGIN', 'GRASP_END'
 
 JointStory = collections.namedtuple('JointStory', 'name body turns lower upper time position')
 Event = collections.namedtuple('Event', 'time kind object hand_id frame')
+Change = collections.namedtuple('Change', 'time text')  # s, of the frame after which it was made; `text` has the time too
 
 
 class ObjectStory:
@@ -139,6 +141,7 @@ class Story:
                       for hand, palms in run.palms.groupby('hand_id')}
         self.joints = self._joints(bodies)
         self.events = [Event(*row) for row in run.events[list(Event._fields)].itertuples(index=False)]
+        self.changes = _changes(run.summary.get('live_run', {}).get('changes', ()))
         self.losses, self.touches, self.moments = [], [], []
 
     def _joints(self, bodies):
@@ -149,3 +152,9 @@ class Story:
                 joints[name] = JointStory(name, body, row['joint_kind'] == 'turning', float(row['lower']), float(row['upper']),
                                           table['time'].to_numpy(), table['position'].to_numpy())
         return joints
+
+
+def _changes(lines):
+    """Changes of the running scene, from lines such as '4.878 s: reset'."""
+    found = [(re.match(r'(\d+\.\d+) s: ', str(line)), str(line)) for line in lines]
+    return [Change(float(match.group(1)), line) for match, line in found if match]

@@ -19,7 +19,7 @@ COLUMNS = {
                     'assist_fx', 'assist_fy', 'assist_fz', 'frame'),
     'joints.csv': ('time', 'name', 'position'),
     'contacts.csv': ('object', 'hand_id', 'finger', 'x', 'y', 'z', 'nx', 'ny', 'nz', 'depth', 'jx', 'jy', 'jz', 'fx', 'fy',
-                     'fz', 'normal_force', 'tangential_force', 'friction_limit', 'touching', 'slipping', 'patch', 'frame'),
+                     'fz', 'normal_force', 'tangential_force', 'friction_limit', 'touching', 'slipping', 'patch', 'frame', 'torque'),
     'palms.csv': ('time', 'hand_id', 'side', 'px', 'py', 'pz', 'qx', 'qy', 'qz', 'qw', 'confidence', 'lost', 'frame'),
     'hands.csv': ('hand_id', 'side', 'finger', 'bone', 'rendered', 'sx', 'sy', 'sz', 'ex', 'ey', 'ez', 'radius', 'frame'),
     'events.csv': ('time', 'kind', 'object', 'hand_id', 'frame'),

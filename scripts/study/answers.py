@@ -4,7 +4,8 @@ import csv
 import io
 import os
 
-from .session_folder import RATING_COLUMNS, StudyError, read_header, read_ratings
+from .session_folder import RATING_COLUMNS, StudyError, read_header, read_ratings, read_trials
+
 
 class Answers:
     """The answers of one participant about one condition, in the session's ratings.csv. Lines are only appended, and
@@ -13,8 +14,15 @@ class Answers:
     def __init__(self, folder, condition=None):
         header = read_header(folder)
         self.participant, self.condition = header['participant'], condition or header['condition']
+        if self.condition != header['condition']:
+            self._check_condition(folder, header['condition'])
         self.path = os.path.join(folder, 'ratings.csv')
         self._read()  # refuses a file that later could not be read
+
+    def _check_condition(self, folder, of_session):
+        allowed = sorted({of_session} | {row['condition'] for row in read_trials(folder, [])})
+        if self.condition not in allowed:
+            raise StudyError("--condition '%s': no trial of %s has it; allowed: %s" % (self.condition, folder, ', '.join(allowed)))
 
     def _read(self):
         """Columns of the file, and this condition's scores by question."""

@@ -31,6 +31,13 @@ class OneLineParser(argparse.ArgumentParser):
         self.exit(2, '%s: %s; --help shows the usage\n' % (self.prog, one_line(message)))
 
 
+def new_file(path):
+    """Type of an argument: a path that is free."""
+    if os.path.lexists(path):
+        raise argparse.ArgumentTypeError("'%s' is there already; allowed: a file that is not" % one_line(path))
+    return path
+
+
 def name():
     return os.path.splitext(os.path.basename(sys.argv[0]))[0]
 

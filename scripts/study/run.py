@@ -16,6 +16,8 @@ from .study_data import HEAD, PEOPLE, SIMULATED, file_label, gather, label_of, m
 def run(folders, output, pairs, ask_r=False, objects=()):
     """Writes everything; returns notes on omissions. `pairs`: (raw, filtered) hands.csv to draw. `ask_r`: also fits models
     in R. `objects`: only trials with these."""
+    if os.path.lexists(output) and not os.path.isdir(output):
+        raise StudyError('%s: is not a folder; allowed: a folder, or a free name' % output)
     sessions = [read_session(folder) for folder in find_sessions(folders)]
     sessions, notes_on_objects = _of_objects(sessions, objects)
     people, of_people, refused = demographics.table(sessions)

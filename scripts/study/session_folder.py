@@ -21,7 +21,7 @@ RATING_COLUMNS = ('condition', 'question', 'score')
 
 # `gravity` is its strength in g. `trials` and `ratings` are lists of dicts; `notes` names what was ignored.
 Session = collections.namedtuple('Session', 'folder participant group handedness condition gravity simulated '
-                                            'session seed started trials ratings notes')
+                                            'session seed task started trials ratings notes')
 
 
 class StudyError(Exception):
@@ -123,7 +123,7 @@ def read_table(path, columns, notes, added=()):
     `added`: columns that may be missing."""
     text = _text_of(path, LARGEST_TABLE, 'utf-8-sig')
     reader = csv.reader(io.StringIO(text, newline=''))
-    header = [cell.strip() for _, cells in itertools.islice(_lines(reader, path), 1) for cell in cells]
+    header = _header(reader, path)
     missing = [column for column in columns if column not in header]
     if missing:
         raise StudyError("%s: line 1: no column '%s'" % (path, missing[0]))
@@ -137,6 +137,15 @@ def read_table(path, columns, notes, added=()):
         elif cells:
             rows.append(_parse_row(path, line, cells, header, places))
     return rows
+
+
+def _header(reader, path):
+    """Names of the columns. Raises StudyError for a separator other than a comma."""
+    header = [cell.strip() for _, cells in itertools.islice(_lines(reader, path), 1) for cell in cells]
+    for separator, shown in ((';', "';'"), ('\t', 'tabs')):
+        if len(header) == 1 and separator in header[0]:
+            raise StudyError("%s: line 1: columns are separated by %s; allowed: ','" % (path, shown))
+    return header
 
 
 def _text_of(path, most, encoding='utf-8'):
@@ -254,13 +263,22 @@ def _text(parse):
 HEADER = (('version', None, _version), ('participant', None, _text(name)), ('group', None, _text(name)),
           ('handedness', 'unknown', _text(one_of('left', 'right'))), ('condition', None, _text(name)),
           ('gravity', None, _strength), ('simulated', False, _flag),
-          ('session', 1, _session), ('seed', 1, _seed), ('started', '', str))
+          ('session', 1, _session), ('seed', 1, _seed), ('task', '', _text(str)), ('started', '', str))
+
+
+def read_trials(folder, notes):
+    """Rows of trials.csv. If there are none, a note says so."""
+    path = os.path.join(folder, 'trials.csv')
+    there = os.path.lexists(path)
+    rows = read_table(path, TRIALS, notes, ADDED) if there else []
+    if not rows:
+        notes.append('%s: %s: only ratings of this session count' % (path, 'has no trials' if there else 'no such file'))
+    return rows
 
 
 def read_session(folder):
     header, notes = read_header(folder), []
-    trials_file, ratings_file = (os.path.join(folder, file) for file in ('trials.csv', 'ratings.csv'))
-    trials = read_table(trials_file, TRIALS, notes, ADDED) if os.path.exists(trials_file) else []
+    trials, ratings_file = read_trials(folder, notes), os.path.join(folder, 'ratings.csv')
     ratings = read_ratings(ratings_file, notes) if os.path.exists(ratings_file) else []
     _add_counts(folder, trials, notes)
     _check_trial_numbers(os.path.join(folder, 'trials.csv'), trials)
@@ -301,8 +319,8 @@ def _as_begun(folder, trials, notes):
 def _has_columns(path, columns):
     if not os.path.exists(path):
         return False
-    first = _text_of(path, LARGEST_TABLE, 'utf-8-sig').split('\n', 1)[0]
-    return set(columns) <= {cell.strip() for cell in first.split(',')}
+    text = io.StringIO(_text_of(path, LARGEST_TABLE, 'utf-8-sig'), newline='')
+    return set(columns) <= set(_header(csv.reader(text), path))
 
 
 def _changed_spans(events):

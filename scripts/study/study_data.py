@@ -20,9 +20,14 @@ StudyData = collections.namedtuple('StudyData', 'trials ratings cells notes')
 
 def gather(sessions):
     sessions = _with_seeds(sessions)
+    _check_tasks(sessions)
     _check_participants(sessions)
     periods = _periods(sessions)
     notes = [note for session in sessions for note in session.notes]
+    for simulated in (False, True):
+        tasks = sorted({s.task for s in sessions if s.simulated == simulated} - {''})
+        if len(tasks) > 1:
+            notes.append('the tasks differ between gravities: %s' % ', '.join(tasks))
     trials = _pooled(sessions, periods, 'trials', list(TRIALS) + list(ADDED) + PLACES)
     ratings = _with_scales(_pooled(sessions, periods, 'ratings', ['question', 'score']))
     if trials.empty and ratings.empty:
@@ -55,6 +60,19 @@ def _with_seeds(sessions):
     if len({s.seed for s in sessions if s.simulated}) < 2:
         return sessions
     return [s._replace(participant='%s seed %d' % (s.participant, s.seed)) if s.simulated else s for s in sessions]
+
+
+def _check_tasks(sessions):
+    """Checks that sessions that are analysed together have one task."""
+    of_part = collections.defaultdict(dict)
+    for session in sessions:
+        if session.task:  # older sessions do not say
+            of_part[session.simulated, session.gravity].setdefault(session.task, []).append(session.folder)
+    for tasks in of_part.values():
+        if len(tasks) > 1:
+            raise StudyError('sessions of different tasks: %s; allowed: sessions of one task' % ', '.join(
+                "'%s' (%s%s)" % (task, folders[0], ' and %d more' % (len(folders) - 1) if folders[1:] else '')
+                for task, folders in sorted(tasks.items())))
 
 
 def _periods(sessions):

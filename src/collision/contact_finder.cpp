@@ -19,6 +19,7 @@ ContactFinder::ContactFinder(const Scene& scene, const SceneGeometry& geometry, 
                              const ContactConfiguration& refinements)
     : scene_(scene), geometry_(geometry), gravity_(gravity), refinements_(refinements) {
   found_.reserve(64 * kMaxHands);
+  factors_.reserve(64);
 }
 
 /// Bodies, capsules, shapes and points ascend, which is the keys' order for one hand. The body comes before
@@ -83,9 +84,34 @@ void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, cons
     const double margin = refinements_.sweep ? kMargin + speed * step : kMargin;
     if (near.clearances[i] - moved > margin) continue;
     const Capsule in_world = hand.capsule(c), in_body = moving.to_local(in_world);
+    const std::size_t found_before = found_count_;
     for (int shape = 0; shape < shapes; ++shape)
       find_touch({hand, c, in_world, in_body, near.body, shape, moving, refinements_}, step, margin, before);
+    if (shapes > 1) share_between_shapes(found_before);
   }
+}
+
+/// A phalanx presses a body no harder than with its whole stiffness at its deepest point, however many shapes
+/// the body consists of. With c_ij = max(0, n_i.n_j), as points on faces at right angles share nothing:
+///
+///     share_i <- share_i min(1, max_j c_ij d_j / sum_j c_ij share_j d_j)
+void ContactFinder::share_between_shapes(std::size_t first) {
+  if (found_count_ - first < 2 || found_[first].key.shape == found_[found_count_ - 1].key.shape) return;
+  const auto begin = found_.begin() + static_cast<std::ptrdiff_t>(first),
+             end = found_.begin() + static_cast<std::ptrdiff_t>(found_count_);
+  factors_.clear();
+  for (auto one = begin; one != end; ++one) {
+    double deepest = 0.0, sum = 0.0;
+    for (auto other = begin; other != end; ++other) {
+      const double depth = std::max(0.0, one->normal.dot(other->normal)) *
+                           (other->ignored ? 0.0 : std::max(0.0, other->depth));
+      deepest = std::max(deepest, depth);
+      sum += other->share * depth;
+    }
+    factors_.push_back(sum > deepest ? deepest / sum : 1.0);
+  }
+  for (std::size_t i = 0; i < factors_.size(); ++i)
+    begin[static_cast<std::ptrdiff_t>(i)].share *= factors_[i];
 }
 
 /// Within kMargin, the present features. Beyond, only if the pair meets within the step, and then the face

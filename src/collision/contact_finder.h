@@ -72,6 +72,7 @@ class ContactFinder {
  private:
   void find_pair(const MovingHand& hand, const NearBody& near, const BodyState& state, double step,
                  const std::vector<Contact>& before);
+  void share_between_shapes(std::size_t first);
   void find_touch(const TouchingPair& pair, double step, double margin, const std::vector<Contact>& before);
   /// Closest features, in the shape's frame, at the time within the step at which the pair first touches, if
   /// it does.
@@ -85,6 +86,7 @@ class ContactFinder {
   const Vector3 gravity_;
   const ContactConfiguration refinements_;
   std::vector<Contact> found_;
+  std::vector<double> factors_;  // of shares
   std::size_t found_count_ = 0;
   const Contact* memory_ = nullptr;  // in the last step, from those of the pair at hand on
 };

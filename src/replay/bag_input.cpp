@@ -186,6 +186,13 @@ class DeviceFrames {
   rosbag::View::iterator next_;
 };
 
+/// A frame with the faults of the one that waited for it.
+SourceFrame with_faults(const SourceFrame& waiting, SourceFrame frame) {
+  frame.corrected.insert(frame.corrected.begin(), waiting.corrected.begin(), waiting.corrected.end());
+  frame.left_out.insert(frame.left_out.begin(), waiting.left_out.begin(), waiting.left_out.end());
+  return frame;
+}
+
 /// Reads a few messages ahead.
 class BagInput : public FrameSource {
  public:
@@ -201,16 +208,18 @@ class BagInput : public FrameSource {
         at_(view_.begin()) {}
 
   std::optional<SourceFrame> next() override try {
+    SourceFrame waiting;
     for (look_ahead(); !ahead_.empty(); look_ahead()) {
-      SourceFrame frame = std::move(ahead_.front().second);
+      SourceFrame frame = with_faults(waiting, std::move(ahead_.front().second));
       ahead_.pop_front();
       ++read_;
       if (!frame.waits) return frame;
+      waiting = std::move(frame);
     }
     SourceFrame last;
     last.frame = reader_.rest();
     if (!last.frame) return std::nullopt;
-    return last;
+    return with_faults(waiting, std::move(last));
   } catch (...) {
     refuse_bag(file_);
   }

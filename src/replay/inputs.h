@@ -27,8 +27,10 @@ class CsvInput : public FrameSource {
   std::optional<SourceFrame> next() override;
   std::size_t position() const override { return position_; }
   std::size_t size() const override { return frames_.size(); }
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
+  std::vector<std::string> warnings_;
   std::vector<JointsFrame> frames_;
   Pose device_in_world_;
   JointsInput input_;
@@ -39,6 +41,7 @@ class CsvInput : public FrameSource {
 struct ReplayInput {
   std::unique_ptr<FrameSource> frames;
   std::string topic;
+  std::vector<std::string> warnings = {};  ///< what is assumed about it
 };
 
 /// Opens a bag to read hands: messages of trackers (ros/tracker_reader.h; a right hand if neither topic nor

@@ -20,14 +20,20 @@ std::string plain(std::string cell) {
 }
 
 /// If cells are separated by semicolons or tabs, as in some locales' spreadsheets, a comma is the decimal
-/// point.
+/// point. A separator in quotes is text.
 std::vector<std::string> split(std::string line, char separator) {
   while (!line.empty() && (line.back() == '\r' || line.back() == '\n')) line.pop_back();
-  if (separator != ',') {
-    std::replace(line.begin(), line.end(), ',', '.');
-    std::replace(line.begin(), line.end(), separator, ',');
+  std::vector<std::string> cells(1);
+  bool is_quoted = false;
+  for (const char c : line) {
+    if (c == separator && !is_quoted) {
+      cells.emplace_back();
+      continue;
+    }
+    const std::size_t first = cells.back().find_first_not_of(" \t");
+    if (c == '"' && (first == std::string::npos || cells.back()[first] == '"')) is_quoted = !is_quoted;
+    cells.back() += c == ',' && separator != ',' ? '.' : c;
   }
-  std::vector<std::string> cells = text::split(line);
   for (std::string& cell : cells) cell = plain(cell);
   return cells;
 }
@@ -40,11 +46,40 @@ char separator_of(const std::string& header) {
 
 constexpr double kLongestRecording = 1e9;  // [s]
 
+/// The times of a table: from its own start, or Unix time in a unit that its first time shows.
+class TableTime {
+ public:
+  TableTime() = default;
+  explicit TableTime(double first) {
+    if (!(first > kLongestRecording && first < 1e20)) return;
+    first_ = first;
+    while (unit_ + 1 < std::size(kUnits) && first * kUnits[unit_].seconds > kLatest) ++unit_;
+  }
+
+  bool is_unix() const { return first_ != 0.0; }
+  const char* unit() const { return kUnits[unit_].name; }
+  double seconds(double time) const { return (time - first_) * kUnits[unit_].seconds; }
+
+ private:
+  struct Unit {
+    const char* name;
+    double seconds;
+  };
+  static constexpr Unit kUnits[] = {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
+
+  static constexpr double kLatest = 1e11;  // Unix time [s]: a larger one is of a smaller unit
+
+  double first_ = 0.0;
+  std::size_t unit_ = 0;
+};
+
 using FrameKey = std::pair<Nanoseconds, double>;  // stamp, and frame_id
 
-FrameKey read_key(const CsvColumns& row) {
-  const double time = row.required("time_s");
-  if (!(time >= 0.0 && time <= kLongestRecording)) row.fail("time_s", "a time of 0 to 1e9 s is needed");
+FrameKey read_key(const CsvColumns& row, const TableTime& times) {
+  const double time = times.seconds(row.required("time_s"));
+  if (!(time >= 0.0 && time <= kLongestRecording))
+    row.fail("time_s", std::string("a time of 0 to 1e9 s is needed") +
+                           (times.is_unix() ? ", counted from the first" : ""));
   return {std::llround(time * 1e9), row.number("frame_id").value_or(0.0)};
 }
 
@@ -58,7 +93,7 @@ std::optional<float> width(const CsvColumns& row, const std::string& column) {
 }
 
 Side read_side(const CsvColumns& row) {
-  const double is_left = row.required("is_left");
+  const double is_left = row.truth("is_left");
   if (is_left != 0.0 && is_left != 1.0) row.fail("is_left", "0 or 1 is needed");
   return is_left == 1.0 ? Side::left : Side::right;
 }
@@ -104,12 +139,16 @@ void require_no_utf16(const std::string& file, const std::string& line) {
 
 }  // namespace
 
-CsvColumns::CsvColumns(std::string file, const std::string& header)
-    : file_(std::move(file)), separator_(separator_of(header)), names_(split(header, separator_)) {
+CsvColumns::CsvColumns(std::string file, const std::string& header, std::size_t line_number)
+    : file_(std::move(file)),
+      separator_(separator_of(header)),
+      names_(split(header, separator_)),
+      header_line_(line_number),
+      line_number_(line_number) {
   for (std::size_t i = 0; i < names_.size(); ++i)
     if (!names_[i].empty() && std::find(names_.begin(), names_.begin() + i, names_[i]) != names_.begin() + i)
-      throw RecordingError(file_ + ":1: column " + text::quoted(names_[i], 40) +
-                           " is given twice; allowed: once");
+      throw RecordingError(file_ + ":" + std::to_string(header_line_) + ": column " +
+                           text::quoted(names_[i], 40) + " is given twice; allowed: once");
 }
 
 void CsvColumns::take(const std::string& line, std::size_t line_number) {
@@ -134,12 +173,18 @@ std::optional<double> CsvColumns::number(const std::string& column) const {
 
 double CsvColumns::required(const std::string& column) const {
   if (std::find(names_.begin(), names_.end(), column) == names_.end())
-    throw RecordingError(file_ + ":1: has no column '" + column +
+    throw RecordingError(file_ + ":" + std::to_string(header_line_) + ": has no column '" + column +
                          "'; allowed: a header with time_s, hand_id, is_left and joints; it begins with '" +
                          text::one_line(names_.front(), 40) + "'");
   const auto value = number(column);
   if (!value) fail(column, "a number is needed");
   return *value;
+}
+
+double CsvColumns::truth(const std::string& column) const {
+  const auto name = std::find(names_.begin(), names_.end(), column);
+  const std::string cell = name == names_.end() ? "" : text::in_lower_case(cells_[name - names_.begin()]);
+  return cell == "true" ? 1.0 : cell == "false" ? 0.0 : required(column);
 }
 
 std::optional<Vector3> CsvColumns::point(const std::string& prefix) const {
@@ -153,24 +198,54 @@ void CsvColumns::fail(const std::string& column, const std::string& what) const 
   throw RecordingError(file_ + ":" + std::to_string(line_number_) + ": " + column + ": " + what);
 }
 
-std::vector<JointsFrame> read_recording_csv(const std::string& file) try {
+namespace {
+
+/// Reads the next line that is not blank or a comment; false if there is none. numpy writes its header as a
+/// comment.
+bool next_row(FileLines& lines, std::string& line, bool is_header) {
+  while (lines.next(line)) {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos) continue;
+    if (line[first] != '#') return true;
+    line.erase(0, first + 1);
+    if (is_header && line.find("time_s") != std::string::npos) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<JointsFrame> read_recording_csv(const std::string& file, std::vector<std::string>* warnings) try {
+  const auto warn = [warnings](const std::string& warning) {
+    if (warnings != nullptr) warnings->push_back(warning);
+  };
   FileLines lines(file);
   std::string line;
-  if (!lines.next(line)) throw RecordingError(file + ": is empty; allowed: a header and frames");
+  if (!next_row(lines, line, true)) throw RecordingError(file + ": is empty; allowed: a header and frames");
   if (line.compare(0, 2, "\x1F\x8B") == 0)
     throw RecordingError(file + ": is compressed by gzip; allowed: the table that 'gunzip' makes of it");
   require_no_utf16(file, line);
-  CsvColumns row(file, line);
+  CsvColumns row(file, line, lines.number());
   std::vector<JointsFrame> frames;
+  TableTime times;
   FrameKey key;
-  while (lines.next(line)) {
-    if (line.empty() || line == "\r") continue;
-    row.take(line, lines.number());
-    const FrameKey next = read_key(row);
-    if (frames.empty() || next != key) frames.push_back({next.first, {}});
-    key = next;
-    if (const auto id = read_id(row)) frames.back().hands.push_back(read_hand(row, *id));
+  while (next_row(lines, line, false)) {
+    try {
+      row.take(line, lines.number());
+      if (frames.empty()) times = TableTime(row.required("time_s"));
+      const FrameKey next = read_key(row, times);
+      const auto id = read_id(row);
+      const auto hand = id ? std::make_optional(read_hand(row, *id)) : std::nullopt;
+      if (frames.empty() || next != key) frames.push_back({next.first, {}});
+      key = next;
+      if (hand) frames.back().hands.push_back(*hand);
+    } catch (const RecordingError& error) {
+      if (!lines.is_unfinished() || frames.empty()) throw;
+      warn(std::string(error.what()) + "; this last line has no end, and is left out");
+    }
   }
+  if (times.is_unix())
+    warn(file + ": time_s is taken as Unix time in " + times.unit() + ", and counted from the first frame");
   if (frames.empty()) throw RecordingError(file + ": has a header and no frames");
   return frames;
 } catch (const FileError& error) {
@@ -178,7 +253,7 @@ std::vector<JointsFrame> read_recording_csv(const std::string& file) try {
 }
 
 CsvInput::CsvInput(const std::string& file, const Pose& device_in_world, double scale)
-    : frames_(read_recording_csv(file)), device_in_world_(device_in_world), input_(scale) {}
+    : frames_(read_recording_csv(file, &warnings_)), device_in_world_(device_in_world), input_(scale) {}
 
 std::optional<SourceFrame> CsvInput::next() {
   if (position_ == frames_.size()) return std::nullopt;

@@ -319,11 +319,12 @@ bool is_csv(const std::string& file) {
 }
 
 ReplayInput open_input(const ReplayArguments& arguments) {
-  if (is_csv(arguments.input))
-    return {
-        std::make_unique<CsvInput>(arguments.input, arguments.hand_transform.value_or(default_device_mount()),
-                                   arguments.hands.scale),
-        ""};
+  if (is_csv(arguments.input)) {
+    auto table = std::make_unique<CsvInput>(
+        arguments.input, arguments.hand_transform.value_or(default_device_mount()), arguments.hands.scale);
+    std::vector<std::string> warnings = table->warnings();
+    return {std::move(table), "", std::move(warnings)};
+  }
   return open_bag(arguments.input, arguments.topic, arguments.hand_transform, arguments.hands);
 }
 
@@ -393,7 +394,8 @@ void replay(const ReplayArguments& arguments) {
   Simulation simulation = prepare_simulation(arguments);
   const ReplayInput input = open_input(arguments);
   ReplayRun run(arguments, input.topic);
-  for (const std::string& warning : simulation.scene().warnings) run.progress.line("replay: " + warning);
+  for (const auto* warnings : {&simulation.scene().warnings, &input.warnings})
+    for (const std::string& warning : *warnings) run.progress.line("replay: " + warning);
   run.begin(simulation, simulation.scene().name);
   run.summary.not_known = {"scene, parameters and changes of the live run: " + log.why_not};
   if (!is_csv(arguments.input))

@@ -79,7 +79,7 @@ Json lost(const ReplaySummary& summary) {
   return Members{{"by_queue", summary.live ? summary.live->lost_by_queue : 0},
                  {"by_order", count("stamp not increasing")},
                  {"by_stamp", count("stamp far ahead") + count("stamp out of range") +
-                                  count("first stamp of another clock")}};
+                                  count(JointsInput::kStray) + count("first stamp of another clock")}};
 }
 
 }  // namespace

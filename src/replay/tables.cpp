@@ -199,7 +199,8 @@ void ResultWriter::write_contacts(double time, const FrameResult& result, const 
                          static_cast<int>(phase(contact)), contact.point, contact.normal, contact.depth,
                          contact.impulse, contact.force, finger_name(capsule), bone_name(capsule),
                          phase_name(phase(contact)), use.normal, use.tangential, use.limit, share,
-                         contact.touching(), contact.friction != Friction::sticking, contact.patch, frame_, contact.peak_force);
+                         contact.touching(), contact.friction != Friction::sticking, contact.patch, frame_,
+                         contact.peak_force, contact.torque);
   }
 }
 

@@ -113,8 +113,9 @@ class TrackerTransforms : public TransformMemory {
 };
 
 std::vector<std::string> known_reasons() {
-  std::vector<std::string> reasons{JointsInput::kUnusable, kStampNotIncreasing, JointsInput::kNoStamp,
-                                   kNoTransform, TrackerTransforms::kReason};
+  std::vector<std::string> reasons{JointsInput::kUnusable,    kStampNotIncreasing, JointsInput::kNoStamp,
+                                   JointsInput::kStray,       JointsInput::kBurst, kNoTransform,
+                                   TrackerTransforms::kReason};
   for (auto kind : {DecodeError::Kind::unknown_version, DecodeError::Kind::malformed,
                     DecodeError::Kind::wrong_count, DecodeError::Kind::unknown_order})
     reasons.emplace_back(DecodeError(kind, "").reason());

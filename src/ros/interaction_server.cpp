@@ -96,7 +96,8 @@ World world_of(const ServerParameters& parameters, const Scene& scene) {
 
 struct InteractionServer::Impl {
   Impl(ros::NodeHandle node, ros::NodeHandle private_node, const ServerParameters& parameters)
-      : fixed_frame_(parameters.fixed_frame),
+      : between_frames_(node),
+        fixed_frame_(parameters.fixed_frame),
         live_(scene_of(parameters), parameters.configuration),
         log_(node, world_of(parameters, live_.simulation().scene()), live_, clock_),
         results_(node, fixed_frame_, parameters.haptics_rate, clock_),
@@ -107,8 +108,7 @@ struct InteractionServer::Impl {
                 {[this](const Tuning::Values& values) { change_parameters(values); },
                  [this](bool on) { placing_.turn(on, live_.simulation()); },
                  [this]() -> const Simulation& { return live_.simulation(); },
-                 [this](const auto& task) { between_frames_.run_beside(task); }}),
-        between_frames_(node) {
+                 [this](const auto& task) { between_frames_.run_beside(task); }}) {
     // Separate: all values of the other status are numbers, and a hash is not.
     diagnostics_.add("state", [this](auto& status) { report_state(status); });
     if (parameters.standard_outputs) results_.add_standard_outputs(node);
@@ -118,6 +118,9 @@ struct InteractionServer::Impl {
     between_frames_.start();
     idle_timer_ = node.createSteadyTimer(kIdlePeriod, [this](const ros::SteadyTimerEvent&) { idle(); });
   }
+
+  /// Stops calls before the members that they use are destroyed.
+  ~Impl() { between_frames_.stop(); }
 
   void subscribe(ros::NodeHandle& node) {
     using Arrival = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
@@ -155,7 +158,7 @@ struct InteractionServer::Impl {
     if (StampCheck(state.stamps).check(frame.stamp, state.time, expected) == StampVerdict::follows) {
       const Nanoseconds left_out = leave_out_before(frame.stamp, kNoTime);
       frame.stamp -= left_out;
-      expected -= left_out;
+      expected = std::max(expected - left_out, frame.stamp);  // confirmed above, as the whole gap
     }
     Rejection rejection = Rejection::none;
     measured([&] {
@@ -415,6 +418,7 @@ struct InteractionServer::Impl {
     }
   }
 
+  BetweenFrames between_frames_;  ///< first member: a service must not outlive its queue
   std::string fixed_frame_;
   LiveSimulation live_;
   StampClock clock_;
@@ -435,7 +439,6 @@ struct InteractionServer::Impl {
   std::vector<ros::ServiceServer> services_;
   ros::WallDuration idle_period_ = kIdlePeriod;
   ros::SteadyTimer idle_timer_;
-  BetweenFrames between_frames_;  ///< last member, so that no call runs during the destruction of the others
 };
 
 InteractionServer::InteractionServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node,

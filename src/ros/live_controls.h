@@ -37,8 +37,10 @@ class BetweenFrames {
  public:
   explicit BetweenFrames(const ros::NodeHandle& node) : node_(node) {}
 
-  /// Drops waiting tasks; their callers get an exception.
-  ~BetweenFrames() {
+  ~BetweenFrames() { stop(); }
+
+  /// Drops waiting tasks; their callers get an exception. Afterwards no call runs.
+  void stop() {
     {
       const std::lock_guard<std::mutex> lock(ending_mutex_);
       ends_ = true;

@@ -169,6 +169,7 @@ msg::ContactArray contacts_message(const Outcome& outcome, const std_msgs::Heade
     entry.tangential_force = use.tangential;
     entry.friction_limit = use.limit;
     entry.peak_force = contact.peak_force;
+    entry.torque = contact.torque;
   }
   return message;
 }
@@ -283,7 +284,8 @@ geometry_msgs::Wrench wrench_message(std::size_t body, const FrameResult& result
   for (const Contact& contact : result.contacts) {
     if (contact.key.body != body) continue;
     force += contact.force;
-    torque += (contact.point - state.bodies[body].pose.position).cross(contact.force);
+    torque += (contact.point - state.bodies[body].pose.position).cross(contact.force) +
+              contact.torque * contact.normal;
   }
   geometry_msgs::Wrench message;
   message.force = vector_message(force);

@@ -103,16 +103,15 @@ void put_before(const std::string& name, Scene& scene) {
 
 ObjectRequest with_file_read(ObjectRequest request, const SceneOptions& options) {
   if (request.urdf.empty() || request.urdf.find('<') != std::string::npos) return request;
-  const std::string given = text::one_line(request.urdf, 200);
   std::string file = request.urdf;
   if (file.compare(0, 7, "file://") == 0) file = file.substr(7);
   if (file.compare(0, 10, "package://") == 0)
     file = options.resolve_package_uri ? options.resolve_package_uri(file) : "";
   const auto text = file.empty() ? std::nullopt : file_text(file, kMaxXmlBytes + 1);
-  if (!text || text->empty())
+  if (!text || text->find('<') == std::string::npos)  // else its text would be taken for a path, and quoted
     throw SceneError(
-        kSource + ": no URDF in '" + given +
-        "'; allowed: the text of a URDF, or the absolute path or package:// of a file that has it");
+        kSource + ": no URDF in " + text::quoted(request.urdf, 200) +
+        "; allowed: the text of a URDF, or the absolute path or package:// of a file that has it");
   request.urdf = *text;
   request.folder = std::filesystem::path(file).parent_path().string();
   return request;

@@ -300,7 +300,7 @@ std::optional<Shape> ShapeReader::read_mesh(const urdf::Mesh& mesh, const std::s
       throw std::runtime_error(begins_with(name.uri, "package://")
                                    ? "not found; allowed: a file of a package that is on the ROS path, or "
                                      "that is a folder above the URDF"
-                                   : "not found in '" + folder_ +
+                                   : "not found in '" + (folder_.empty() ? "." : folder_) +
                                          "'; allowed: package://, file://, or a path from the URDF's folder");
     const auto used = triangles_of(name, solid, element);
     const bool is_uri = name.uri.find("://") != std::string::npos;

@@ -48,6 +48,7 @@ void add_transfer(const FrameTransfer& transfer, std::vector<Contact>& contacts)
     }
     same->impulse = moved.impulse;
     same->force = rate * moved.force;
+    same->torque = rate * moved.torque;
     same->peak_force = moved.peak_force;
   }
   if (contacts.size() > touching) {
@@ -114,7 +115,7 @@ void Simulation::Impl::find_final_contacts() {
   neighbours.begin_step(state.bodies, 0.0);
   finder.find(hands, neighbours, state.bodies, 0.0, contacts);
   for (Contact& contact : contacts)
-    contact.impulse.setZero(), contact.force.setZero(), contact.peak_force = 0.0;
+    contact.impulse.setZero(), contact.force.setZero(), contact.torque = contact.peak_force = 0.0;
   contacts.erase(
       std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.touching(); }),
       contacts.end());
@@ -231,10 +232,10 @@ void FrameTransfer::add(const Contact& contact, double step, double force) {
   auto known = std::lower_bound(contacts.begin(), contacts.end(), contact.key, before);
   if (known == contacts.end() || !(known->key == contact.key)) {
     known = contacts.insert(known, contact);
-    known->force *= step;
+    known->force *= step, known->torque *= step;
   } else {
     known->impulse += contact.impulse;
-    known->force += step * contact.force;
+    known->force += step * contact.force, known->torque += step * contact.torque;
   }
   known->peak_force = std::max(known->peak_force, force);
 }

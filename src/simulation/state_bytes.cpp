@@ -17,7 +17,7 @@ namespace mrhi {
 namespace {
 
 /// Format version. Changes whenever the order or meaning of the bytes does.
-constexpr std::uint64_t kFormat = 0x6d7268690000000aull;
+constexpr std::uint64_t kFormat = 0x6d7268690000000bull;
 
 [[noreturn]] void refuse(const char* what) {
   throw std::invalid_argument(std::string("recorded state: ") + what +
@@ -258,11 +258,11 @@ class Parts {
     all(velocity, differences, intervals, noise, energy, extrapolated);
   }
   void one(HandTrack& part) {
-    auto& [active, held, appeared, emerged, previous, current, last_seen, filter, rejoin, change, path,
+    auto& [active, held, appeared, emerged, eases, previous, current, last_seen, filter, rejoin, change, path,
            mean_velocity] = part;
     one(active);
     if (Visitor::kHashes && !active) return one(filter.noise, current.side);
-    all(held, appeared, emerged);
+    all(held, appeared, emerged, eases);
     stamp(last_seen);
     all(previous, current, filter, change, rejoin, path, mean_velocity);
   }

@@ -106,6 +106,7 @@ std::string find_named_file(const std::string& kind, const std::string& name, co
     const fs::path file = fs::path(directory) / (name + extension);
     if (!is_path && is_file(file)) return file.string();
   }
+  if (is_file(name)) return name;  // with another extension, or none
   throw InputError(
       (is_path ? kind + " file '" + name + "' does not exist" : "unknown " + kind + " '" + name + "'") +
       "; allowed: " + (extension == ".urdf" ? "a URDF" : "a YAML") + " file, or one of " +

@@ -37,7 +37,8 @@ class FileLines {
   /// Reads the next line, without its end; false if there is none. Throws FileError for a line that is too
   /// long for a table.
   bool next(std::string& line);
-  std::size_t number() const { return number_; }  ///< of the last one, from 1
+  std::size_t number() const { return number_; }        ///< of the last one, from 1
+  bool is_unfinished() const { return stream_.eof(); }  ///< it is the last one, and has no end
 
  private:
   std::string file_;
@@ -57,7 +58,8 @@ std::ofstream file_to_write(const std::string& file,
 void write_file(const std::string& file, const std::string& text);
 
 /// Finds a file: `name` is a path to a file with this extension (".urdf"), or a name looked up as
-/// DIRECTORY/NAME.urdf. Throws InputError with the `kind` of file ("scene") and the known names.
+/// DIRECTORY/NAME.urdf, else a path to any file. Throws InputError with the `kind` of file ("scene") and the
+/// known names.
 std::string find_named_file(const std::string& kind, const std::string& name, const std::string& extension,
                             const std::vector<std::string>& directories);
 

@@ -71,9 +71,9 @@ double filter_noise(const SeenNoise& seen);
 
 /// Assigns the frame's hands to tracks (by id; a new id on the same side, near a hand that is held, continues
 /// it), filters them, holds those that are missing, and reports hand_found. Call lose_unseen_hands first.
-/// `hands` has kMaxHands slots; further hands are left out.
-void track_hands(const HandFrame& frame, const Configuration& configuration, std::vector<HandTrack>& hands,
-                 std::vector<Event>& events);
+/// `elapsed`: since the frame before [s]. `hands` has kMaxHands slots; further hands are left out.
+void track_hands(const HandFrame& frame, double elapsed, const Configuration& configuration,
+                 std::vector<HandTrack>& hands, std::vector<Event>& events);
 
 /// Changes the filter at `now`. Positions and velocities stay continuous; the change takes 0.2 s.
 void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands);

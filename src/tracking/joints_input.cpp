@@ -45,9 +45,10 @@ StampSteps::Verdict StampSteps::take(Nanoseconds stamp, const std::optional<Nano
   if (since > 0 && (since <= longest || waited_less)) return accept(frame);
   const std::optional<Frame> before = off_;
   off_ = frame;
-  if (!before || !is_even(frame.stamp - before->stamp, frame.receipt - before->receipt))
-    return {stamp + correction_};
-  Verdict verdict{stamp};
+  Verdict verdict{stamp + correction_};
+  verdict.is_stray = !before && accepted_ > 1 && (since > 0 || since < -StampCheck::kBack);
+  if (!before || !is_even(frame.stamp - before->stamp, frame.receipt - before->receipt)) return verdict;
+  verdict.stamp = stamp;
   if (accepted_ == 1) {
     verdict.first_was_off = true;
   } else {
@@ -110,7 +111,7 @@ void JointGaps::fill(JointsFrame& frame) {
 }
 
 const std::vector<const char*>& JointsInput::corrections() {
-  static const std::vector<const char*> all{kJointsLeftOut, kNoHand, kStep, kOrder};
+  static const std::vector<const char*> all{kJointsLeftOut, kNoHand, kStep, kOrder, kUnpaired};
   return all;
 }
 
@@ -119,13 +120,20 @@ SourceFrame JointsInput::take(TrackerFrame input, const Device& device) {
   result.arrival = input.receipt;
   JointsFrame& joints = input.joints;
   Stream& stream = streams_[input.stream];
-  if (joints.stamp == 0) joints.stamp = input.receipt.value_or(0);
+  const bool is_stamped = joints.stamp != 0;
+  if (!is_stamped) joints.stamp = input.receipt.value_or(0);
   const StampSteps::Verdict verdict = stream.steps.take(joints.stamp, input.receipt);
   result.first_was_off = verdict.first_was_off;
   if (verdict.is_step)
     result.corrected.emplace_back(
         kStep, text::number(to_seconds(joints.stamp - verdict.stamp)) + " s on " + input.stream);
   joints.stamp = verdict.stamp;
+  if (verdict.is_stray && is_stamped) {
+    result.reason = kStray;
+    result.detail =
+        text::number(to_seconds(verdict.stamp - stream.newest)) + " s from the last frame's stamp";
+    return result;
+  }
   if (verdict.is_step) joints.stamp += share_correction(stream);
   const Nanoseconds since = joints.stamp - stream.taken;
   if (stream.is_burst(joints.stamp)) {
@@ -141,6 +149,9 @@ SourceFrame JointsInput::take(TrackerFrame input, const Device& device) {
   if (!result.frame || !input.side) return result;
   result.frame = pairs_.take(*input.side, *result.frame);
   result.waits = !result.frame;
+  if (pairs_.has_dropped())
+    result.corrected.emplace_back(
+        kUnpaired, "none of the other hand at its time; allowed: both hands on one topic, or at one rate");
   return result;
 }
 
@@ -424,10 +435,12 @@ bool HandPairs::is_partner(Side side, Nanoseconds stamp) const {
 /// dropped, as stamps must not decrease.
 std::optional<HandFrame> HandPairs::take(Side side, const HandFrame& frame) {
   streams_[index(side)].note(frame.stamp);
+  has_dropped_ = false;
   if (is_partner(side, frame.stamp)) {
     const HandFrame other = *std::exchange(waiting_, std::nullopt);
     return side == Side::left ? joined(frame, other) : joined(other, frame);
   }
+  has_dropped_ = waiting_.has_value();
   waiting_.reset();
   if (!streams_[1 - index(side)].goes_on(frame.stamp)) return frame;
   waiting_ = frame;

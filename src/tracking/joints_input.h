@@ -90,13 +90,15 @@ class OrderRecognition {
 
 /// Removes steps of a tracker's clock from its stamps, by the times of receipt. Two successive frames that
 /// are off by the same time, with evenly spaced receipts, prove a step: the second one then continues the
-/// stream according to its receipt. The first one keeps its stamp; StampCheck rejects it. A frame that is no
-/// further ahead of its receipt than earlier frames were only had a shorter delay.
+/// stream according to its receipt. The first one is a stray: a simulation that has just been reset would
+/// start at its stamp. A frame that is no further ahead of its receipt than earlier frames were only had a
+/// shorter delay.
 class StampSteps {
  public:
   struct Verdict {
-    Nanoseconds stamp;     ///< without steps
-    bool is_step = false;  ///< this frame has proved one
+    Nanoseconds stamp;      ///< without steps
+    bool is_step = false;   ///< this frame has proved one
+    bool is_stray = false;  ///< far from its stream, and single so far
     bool first_was_off =
         false;  ///< the stream's first frame alone was of another clock; nothing is corrected
   };
@@ -154,9 +156,11 @@ class JointsInput {
   static constexpr const char* kNoHand = "hands of placeholders";
   static constexpr const char* kStep = "clock steps taken out";
   static constexpr const char* kOrder = "order of joints recognised";
+  static constexpr const char* kUnpaired = "frames of one hand left out";
   static constexpr const char* kUnusable = "unusable hand";
   static constexpr const char* kNoStamp = "stamp out of range";
   static constexpr const char* kBurst = "frames of a burst";
+  static constexpr const char* kStray = "stamp far from its stream";
   static const std::vector<const char*>& corrections();
 
   /// Pose of the tracker in world at a stamp.

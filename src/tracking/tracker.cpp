@@ -11,7 +11,7 @@ namespace mrhi {
 
 // With the minimum-jerk fraction s(u) at the fraction u of the duration T, the hand is at s (distance + speed
 // u T) from where it was held: its acceleration is at most speed/T max|u s'' + 2 s'| + distance/T^2 max|s''|.
-Nanoseconds rejoin_duration(double distance, double away) {
+Nanoseconds rejoin_duration(double distance, double speed) {
   // Largest acceleration [m/s^2]: an object held with 1.5 times the force that its weight needs withstands
   // it.
   constexpr double kMaxAcceleration = 5.0;
@@ -21,7 +21,7 @@ Nanoseconds rejoin_duration(double distance, double away) {
   // With s = 10 u^3 - 15 u^4 + 6 u^5: max |120 u^2 - 300 u^3 + 180 u^4| at u = 0.386, and max |s''| = 10 /
   // sqrt(3) at u = (3 - sqrt(3)) / 6. Then a T^2 = b T + kDistanceFactor distance, of which T is the positive
   // root.
-  const double b = kSpeedFactor * distance / away;
+  const double b = kSpeedFactor * speed;
   const double duration =
       (b + std::sqrt(b * b + 4.0 * kMaxAcceleration * kDistanceFactor * distance)) / (2.0 * kMaxAcceleration);
   return static_cast<Nanoseconds>(1e9 * std::clamp(duration, kMinDuration, kMaxDuration));
@@ -222,7 +222,7 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.active = true;
   track.held = false;
   track.appeared = true;
-  track.emerged = false;
+  track.emerged = track.eases = false;
   track.filter.restart(hand);
   track.previous = track.current = hand;
   track.path = HandPath();
@@ -276,58 +276,112 @@ Hand slowed(const Hand& before, const Hand& tracked, double speed, double elapse
   return hand;
 }
 
-/// Jumps are detected in raw samples: filtered poses lag, and the lag would look like a jump. A held hand
+/// Time in which a missing hand comes to rest; it has returned briefly, if within that time [s].
+constexpr double kBriefLoss = 0.1;
+/// Time constant at which a hand that has returned briefly approaches the filtered one [s], and the distance
+/// at which it has [m].
+constexpr double kEase = 0.03, kEased = 1e-5;
+
+/// The hand moved on for `seconds` with its mean velocity.
+Hand moved_on(const HandTrack& track, double seconds) {
+  Hand hand = track.current;
+  for (std::size_t p = 0; p < kHandPoints; ++p)
+    if (has_point(hand, p)) hand_point(hand, p) += seconds * track.mean_velocity.points[p];
+  hand.palm.orientation =
+      (rotation_by(seconds * track.mean_velocity.turn) * hand.palm.orientation).normalized();
+  return hand;
+}
+
+/// The filtered hand with `kept` of the offset that it had: of the hand that was shown from the filtered one.
+Hand with_offset(const Hand& shown, const Hand& had, double kept, const Hand& filtered) {
+  Hand hand = filtered;
+  for (std::size_t p = 0; p < kHandPoints; ++p)
+    if (has_point(filtered, p) && has_point(shown, p) && has_point(had, p))
+      hand_point(hand, p) += kept * (hand_point(shown, p) - hand_point(had, p));
+  const Quaternion offset = shown.palm.orientation * had.palm.orientation.conjugate();
+  hand.palm.orientation =
+      (Quaternion::Identity().slerp(kept, offset) * filtered.palm.orientation).normalized();
+  return hand;
+}
+
+/// Jumps are detected in raw samples: filtered poses lag, and the lag would look like a jump. A hand that
+/// returns briefly is filtered as if its tracker had sent no frames meanwhile. One that was lost for longer
 /// restarts its filter, because its old samples say nothing about the present, and catches up from the pose
 /// that was shown.
-void follow(const Hand& hand, Nanoseconds stamp, const Configuration& configuration, HandTrack& track) {
+void follow(const Hand& hand, Nanoseconds stamp, double elapsed, const Configuration& configuration,
+            HandTrack& track) {
   const double away = to_seconds(stamp - track.last_seen);
-  if (farthest_joint(track.filter.history.samples[0], hand) > configuration.tracking.max_speed * away) {
+  const double speed = farthest_joint(track.filter.history.samples[0], hand) / away;
+  if (speed > configuration.tracking.max_speed) {
     appear(hand, stamp, track);
     return;
   }
-  if (track.held) {
+  const bool returns_briefly = track.held && away <= kBriefLoss && track.rejoin.duration == 0;
+  if (track.held && !returns_briefly) {
     track.filter.clear();
     track.filter_change.reset();
-    track.rejoin = {track.current, stamp, rejoin_duration(farthest_joint(track.current, hand), away)};
+    track.eases = false;
+    track.rejoin = {track.current, stamp, rejoin_duration(farthest_joint(track.current, hand), speed)};
   }
   track.emerged = track.appeared;
   track.appeared = track.held = false;
+  Hand shown, had;  // at one time
+  if (returns_briefly) {
+    shown = moved_on(track, elapsed);
+  } else if (track.eases) {
+    shown = track.current, had = track.filter.filtered;
+  }
   track.previous = track.current;
   track.current = filtered_through_change(hand, stamp, configuration, track);
   track.last_seen = stamp;
+  if (returns_briefly || track.eases) {
+    const Hand now = track.current;
+    track.current = with_offset(shown, returns_briefly ? now : had, std::exp(-elapsed / kEase), now);
+    track.eases = farthest_joint(track.current, now) > kEased;
+    if (!track.eases) track.current = now;
+  }
   if (track.rejoin.duration > 0) {
     track.current = catching_up(track.rejoin, track.current, stamp);
     if (stamp - track.rejoin.begin >= track.rejoin.duration) track.rejoin.duration = 0;
   }
   if (std::isfinite(configuration.hand_joint_speed))
-    track.current = slowed(track.previous, track.current, configuration.hand_joint_speed, away);
-  extend_path(away, track);
+    track.current = slowed(track.previous, track.current, configuration.hand_joint_speed, elapsed);
+  extend_path(elapsed, track);
 }
 
-/// Stops the hand: its last two poses are the same.
-void hold(HandTrack& track) {
+/// Slows a missing hand down until it stands still: its last two poses are then the same. One that stopped
+/// dead would lose what it carries.
+void hold(Nanoseconds stamp, double elapsed, HandTrack& track) {
   track.held = true;
   track.emerged = track.appeared;
   track.appeared = false;
   track.previous = track.current;
-  track.path = HandPath();
+  const double away = to_seconds(stamp - track.last_seen);
+  const double spent = away / kBriefLoss;
+  if (spent < 1.0 && track.rejoin.duration == 0) {
+    track.current = moved_on(track, elapsed * (1.0 - spent * spent));
+    extend_path(elapsed, track);
+  } else {
+    track.path = HandPath();
+    track.mean_velocity = HandVelocity();
+  }
 }
 
 }  // namespace
 
-void track_hands(const HandFrame& frame, const Configuration& configuration, std::vector<HandTrack>& hands,
-                 std::vector<Event>& events) {
+void track_hands(const HandFrame& frame, double elapsed, const Configuration& configuration,
+                 std::vector<HandTrack>& hands, std::vector<Event>& events) {
   const Assignment assignment = assign_hands(frame.hands, hands);
   for (std::size_t slot = 0; slot < hands.size(); ++slot) {
     HandTrack& track = hands[slot];
     if (assignment[slot] < 0) {
-      if (track.active) hold(track);
+      if (track.active) hold(frame.stamp, elapsed, track);
       continue;
     }
     Hand hand = frame.hands[assignment[slot]];
     for (Capsule& capsule : hand.capsules) capsule.radius *= configuration.hand_radius_scale;
     if (track.active) {
-      follow(hand, frame.stamp, configuration, track);
+      follow(hand, frame.stamp, elapsed, configuration, track);
     } else {
       if (!was_last_here(track, hand)) track.filter.noise = SeenNoise();
       appear(hand, frame.stamp, track);

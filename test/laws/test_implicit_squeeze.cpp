@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "support/deep_squeeze.h"
+#include "support/pinch_scene.h"
 
 namespace mrhi {
 namespace {
@@ -50,6 +51,37 @@ INSTANTIATE_TEST_SUITE_P(objects, ImplicitSqueeze,
                                            Squeeze{"bar_by_tips", {0.020, 0.2, 0.020}, false},
                                            Squeeze{"bar_by_flat_fingers", {0.020, 0.2, 0.020}, true}),
                          [](const auto& tested) { return tested.param.name; });
+
+/// Normal force of the thumb on the cube of scene (a), as `parts` slices along `axis` [N].
+double thumbs_force(int parts, int axis) {
+  const testing::PinchScene pinch;
+  Scene scene = pinch.scene();
+  std::vector<PlacedShape> slices;
+  for (int i = 0; i < parts; ++i) {
+    Vector3 half = Vector3::Constant(pinch.half);
+    half[axis] /= parts;
+    PlacedShape slice{Box{half}, {}};
+    slice.pose.position[axis] = (2.0 * i + 1.0 - parts) * half[axis];
+    slices.push_back(slice);
+  }
+  scene.bodies[0].shapes = slices;
+  Simulation simulation(scene, testing::implicit_configuration());
+  testing::play(simulation, 0.0, 1.0, 60.0, [&](double t) { return pinch.hand(t, Vector3::Zero()); });
+  double force = 0.0;
+  for (const Contact& contact : simulation.result().contacts)
+    if (finger_of(contact.key.capsule) == 0) force -= contact.normal.dot(contact.force);
+  return force;
+}
+
+// Two boxes side by side, and ten, were pressed with up to four times the force. 4.7 % as measured: at the
+// ends of a phalanx other slices are deepest.
+TEST(ImplicitSqueeze, presses_a_body_of_many_boxes_as_hard_as_one_box) {
+  const double one = thumbs_force(1, 0);
+  EXPECT_GT(one, 1.0);
+  for (const int axis : {1, 2})  // across the fingers, and along them
+    for (const int parts : {2, 4, 10})
+      EXPECT_NEAR(thumbs_force(parts, axis), one, 0.05 * one) << parts << " " << axis;
+}
 
 }  // namespace
 }  // namespace mrhi

@@ -31,6 +31,22 @@ TEST(ImplicitTorsion, without_it_the_bar_swings) {
   EXPECT_GE(swing.largest, 10.0 * kDegrees);
 }
 
+// It is at rest, so the hand's torque about its centre is zero: the soft fingers' is part of it.
+TEST(ImplicitTorsion, is_reported_with_the_contacts_of_a_bar_that_rests_by_its_end) {
+  Scene scene = testing::scene_of(testing::stiff_box(testing::kBar, testing::kBarMass));
+  scene.gravity = Vector3(0.0, 0.0, -0.1);
+  Simulation simulation(scene, testing::implicit_configuration());
+  testing::play(simulation, 0.0, 3.0, 120.0, testing::closing_on_the_end);
+  const Vector3& centre = simulation.state().bodies[0].pose.position;
+  Vector3 of_forces = Vector3::Zero(), of_pads = Vector3::Zero();
+  for (const Contact& contact : simulation.result().contacts) {
+    of_forces += (contact.point - centre).cross(contact.force);
+    of_pads += contact.torque * contact.normal;
+  }
+  EXPECT_GT(of_forces.norm(), 1e-4);
+  EXPECT_LT((of_forces + of_pads).norm(), 0.01 * of_forces.norm());
+}
+
 /// A bar held by its end at a hundredth of a g, with ten small cubes on it: more bodies than are solved for
 /// exactly. How far its other end has sunk about the finger line [rad].
 double sunk_under_a_crowd(const Configuration& configuration) {

@@ -153,6 +153,14 @@ class EndsTest(unittest.TestCase):
         answer = run(*PLAN, "--first", "9999-12-31", "--sessions", "2", "--output", self.path("plan.csv"))
         self.assert_refused("plan_study", answer, "--first 9999-12-31", "allowed: what ends by the year 9999")
 
+    def test_a_wrong_argument_is_told_in_one_line(self):
+        for script in ("analyse_study", "ask_participant", "ask_ratings", "calibrate_study", "compare", "explain", "export",
+                       "plan_study", "power_study"):
+            with self.subTest(script=script):
+                status, said, complaint = refused(script, "--wrong")
+                self.assertEqual((status, said, complaint.count("\n")), (2, "", 1), complaint)
+                self.assertTrue(complaint.startswith(script + ": "), complaint)
+
     def test_a_reader_that_has_gone_is_no_fault(self):
         for command in (("plan_study", "--help"), PLAN + ("--output", self.path("plan.csv")), ("run_when", "--help"),
                         ("explain", "--help"), ("calibrate_study", "--studies", "1", "--design", "3v3")):

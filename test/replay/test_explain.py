@@ -16,6 +16,8 @@ from pinching import (HALF, LIMIT, MASS, MOVES, PEAK, RADIUS, RATE, REPLAY, STIF
 from runs import losses as finding
 from runs.explanation import as_json
 from runs.page import page_of
+from runs.story import Story
+from runs.tables import Run
 
 SLIPPERY, WEAK, OPENING = {'friction': 0.04}, {'overlap': 0.0001}, {'opens_at': 0.9}
 
@@ -134,6 +136,20 @@ class ExplainTest(Folders):
         self.assertAlmostEqual(loss.assistance.share, 0.75)
         self.assertLess(loss.assistance.until, loss.until - 0.2)
         self.assertIn('with 3 N on average, 75 % of what acted on it', loss.text)
+
+    def test_a_change_of_the_running_scene_shortly_before_a_loss_is_its_cause(self):
+        story = self.story(**WEAK)
+        end = min(story.losses[0].until, story.losses[0].grasp_end or math.inf)
+        for before, cause in ((0.19, 'changed'), (0.0, 'changed'), (0.21, 'too_little_force'), (-0.01, 'too_little_force')):
+            line = '%.3f s: set grasp/object=never' % (end - before)
+            with tempfile.TemporaryDirectory() as folder:
+                run = Run(Attempt(**WEAK).replay(folder))
+                run.summary['live_run'] = {'changes': ['0.100 s: reset', line]}
+                story = Story(run)
+            finding.add_losses(story)
+            self.assertEqual(story.losses[0].cause, cause, story.losses[0].text)
+            if cause == 'changed':
+                self.assertIn('shortly before, at %s. ' % line, story.losses[0].text)
 
     def test_a_hand_that_opens_has_opened_also_if_assist_supported_what_it_held(self):
         def change(thing, _):

@@ -5,6 +5,7 @@
 #include <locale.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -120,6 +121,65 @@ TEST(RecordingCsv, ErrorsNameLineAndColumn) {
             ":2: is longer than 65536 bytes; allowed: at most that");
   EXPECT_THROW(read_recording_csv("/nowhere/at_all.csv"), RecordingError);
   EXPECT_THROW(read_recording_csv("/dev/zero"), RecordingError);
+}
+
+TEST(RecordingCsv, UnixTimeInAnyUnitIsCountedFromTheFirstFrame) {
+  const std::vector<std::array<std::string, 3>> tables{{"1700000000.25", "1700000000.75", "s"},
+                                                       {"1700000000250", "1700000000750", "ms"},
+                                                       {"1700000000250000", "1700000000750000", "us"},
+                                                       {"1700000000250000000", "1700000000750000000", "ns"}};
+  for (const auto& [first, second, unit] : tables) {
+    const RecordingFile file(std::string(kHeader) + "0," + first + ",1,4,,,,,,,\n0," + second +
+                             ",2,4,,,,,,,\n");
+    std::vector<std::string> warnings;
+    const auto frames = read_recording_csv(file.path(), &warnings);
+    ASSERT_EQ(frames.size(), 2u);
+    EXPECT_EQ(frames[0].stamp, 0);
+    EXPECT_NEAR(static_cast<double>(frames[1].stamp), 5e8, 1e3) << unit;
+    EXPECT_EQ(warnings, std::vector<std::string>{file.path() + ": time_s is taken as Unix time in " + unit +
+                                                 ", and counted from the first frame"});
+  }
+  EXPECT_EQ(error_of(std::string(kHeader) + "0,1700000000,1,4,,,,,,,\n0,5,2,4,,,,,,,\n"),
+            ":3: time_s: a time of 0 to 1e9 s is needed, counted from the first");
+}
+
+TEST(RecordingCsv, SidesMayBeTrueAndFalseAsPandasAndRWriteThem) {
+  for (const auto& [left, right] :
+       {std::pair<std::string, std::string>{"True", "False"}, {"TRUE", "FALSE"}}) {
+    const RecordingFile file(std::string(kHeader) + left + ",0,1,4,,,,,,,\n" + right + ",0,1,5,,,,,,,\n");
+    const auto frames = read_recording_csv(file.path());
+    ASSERT_EQ(frames.at(0).hands.size(), 2u);
+    EXPECT_EQ(frames[0].hands[0].side, Side::left);
+    EXPECT_EQ(frames[0].hands[1].side, Side::right);
+  }
+}
+
+TEST(RecordingCsv, ALastLineThatIsCutOffIsLeftOutWithAWarning) {
+  const std::string whole = std::string(kHeader) + "0,0,1,4,,,,,,,\n";
+  for (const char* rest : {"0,0.01,2,4,,,", "0,0.01,2,4,,,,,0.1,0.2,-"}) {
+    const RecordingFile file(whole + rest);
+    std::vector<std::string> warnings;
+    EXPECT_EQ(read_recording_csv(file.path(), &warnings).size(), 1u) << rest;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0].find(file.path() + ":3: "), 0u) << warnings[0];
+    EXPECT_NE(error_of(whole + rest + "\n"), "no error") << "it is not cut off";
+  }
+  const RecordingFile file(whole + "0,0.01,2,4,,,,,,,");
+  std::vector<std::string> warnings;
+  EXPECT_EQ(read_recording_csv(file.path(), &warnings).size(), 2u);
+  EXPECT_TRUE(warnings.empty());
+}
+
+TEST(RecordingCsv, CommentsAndBlankLinesAreNoRowsAndASeparatorInQuotesIsText) {
+  const std::string header = "time_s,hand_id,note,is_left\n";
+  for (const std::string& start :
+       {"" + header, "\n \n" + header, "# taken at noon\n" + header, "# " + header}) {
+    const RecordingFile file(start + "0,4,\"one, \"\"two\"\", 3\",1\n# a pause\n\n0.5,4,5\" wide,1\n");
+    const auto frames = read_recording_csv(file.path());
+    ASSERT_EQ(frames.size(), 2u) << start;
+    EXPECT_EQ(frames[1].hands.at(0).side, Side::left);
+  }
+  EXPECT_EQ(error_of("\n\ntime,hand_id\n0,1\n").find(":3: has no column 'time_s'"), 0u);
 }
 
 TEST(RecordingCsv, AFileInUtf16IsNamedWithWhatConvertsIt) {

@@ -69,6 +69,7 @@ TEST(ResultWriter, contacts_name_object_hand_and_phase) {
   contact.friction = Friction::slipping;
   contact.patch = 0.004;
   contact.peak_force = 0.75;
+  contact.torque = 0.002;
   written.result.contacts = {contact, contact};
   written.result.contacts[1].impulse = {0, 0, -0.25};
   written.result.contacts[1].key.capsule = kPalm;
@@ -79,13 +80,13 @@ TEST(ResultWriter, contacts_name_object_hand_and_phase) {
   EXPECT_EQ(lines[0],
             "time,object,hand_id,finger,bone,phase,x,y,z,nx,ny,nz,depth,jx,jy,jz,fx,fy,fz,"
             "finger_name,bone_name,phase_name,normal_force,tangential_force,friction_limit,friction_share,"
-            "touching,slipping,patch,frame,peak_force");
+            "touching,slipping,patch,frame,peak_force,torque");
   EXPECT_EQ(lines[1],
             "0,object,4000000000,1,3,2,1,2,3,0,0,1,0.002,0,0,0,0.3,0,-0.5,index,distal,slipping,0.5,0.3,0.3,"
-            "1,1,1,0.004,0,0.75");
+            "1,1,1,0.004,0,0.75,0.002");
   EXPECT_EQ(lines[2],
             "0,object,4000000000,5,0,0,1,2,3,0,0,1,0,0,0,-0.25,0.3,0,-0.5,palm,palm,impulse,0.5,0.3,0.3,1,0,"
-            "1,0.004,0,0.75");
+            "1,0.004,0,0.75,0.002");
 }
 
 TEST(ResultWriter, hands_have_the_phalanges_that_exist_tracked_and_rendered) {

@@ -63,7 +63,8 @@ class LaunchFilesTest(unittest.TestCase):
             for argument in NEEDED.get(name, []):
                 self.assertIn(argument.split(":=")[0], listed)
         for argument, folder in (("session:=1", "/s/P01_implicit_hatch"), ("session:=2", "/s/P01_implicit_hatch_2"),
-                                 ("folder:=/f", "/f")):
+                                 ("folder:=/f", "/f"), ("participant:=007", "/s/007_implicit_hatch"),
+                                 ("condition:=1e5", "/s/P01_1e5_hatch")):
             config = config_of("training.launch", "sessions:=/s", "task:=/t/hatch.yaml", argument)
             self.assertEqual(config.params["/training_node/folder"].value, folder)
             bag = [node for node in config.nodes if node.package == "rosbag"][0]
@@ -126,6 +127,9 @@ class LaunchFilesTest(unittest.TestCase):
                                         ("multi_machine.launch", "hands:=x", "leap, demo"),
                                         ("mr_view.launch", "hands:=x", "demo, leap, none"),
                                         ("training.launch", "hands:=x", "leap, operator, demo, none"),
+                                        ("training.launch", "sessions:=x", "an absolute path"),
+                                        ("training.launch", "folder:=~/x", "an absolute path"),
+                                        ("record.launch", "bag:=x.bag", "an absolute path"),
                                         ("web.launch", "hands:=x", "headset, demo, leap, bag, none"),
                                         ("web.launch", "people:=3", "1, 2"),
                                         ("playback.launch", "rate:=x", "a number above 0"),

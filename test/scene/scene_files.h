@@ -33,6 +33,18 @@ class Folder {
   std::filesystem::path path_;
 };
 
+/// Makes a folder the working folder during its lifetime.
+class WorkingFolder {
+ public:
+  explicit WorkingFolder(const Folder& folder) { std::filesystem::current_path(folder.path()); }
+  ~WorkingFolder() { std::filesystem::current_path(before_); }
+  WorkingFolder(const WorkingFolder&) = delete;
+  WorkingFolder& operator=(const WorkingFolder&) = delete;
+
+ private:
+  std::filesystem::path before_ = std::filesystem::current_path();
+};
+
 const char* const kInertial =
     R"(<inertial><mass value="0.1"/>
        <inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial>)";

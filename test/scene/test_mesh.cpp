@@ -145,6 +145,10 @@ TEST_F(MeshScene, IsFoundByPathFileUriAndPackage) {
 TEST_F(MeshScene, RefusesAMissingOrBrokenFile) {
   test::expect_words(error("filename=\"none.stl\""),
                      {"'thing' collision 1", "'none.stl'", "not found", folder_.path()});
+  {
+    const test::WorkingFolder here(folder_);
+    test::expect_words(test::scene_error("test.urdf"), {"'none.stl' not found in '.'"});
+  }
   folder_.write("broken.stl", "this is not a mesh");
   test::expect_words(error("filename=\"broken.stl\""), {"'thing' collision 1", "'broken.stl'", "read"});
   folder_.write("cut.stl", std::string(80, ' ') + std::string("\2\0\0\0", 4) + std::string(50, '\0'));

@@ -139,6 +139,16 @@ TEST(ObjectRequest, a_bad_one_is_refused_with_one_line) {
                      {"turns or slides", "floating, fixed"});
 }
 
+TEST(ObjectRequest, a_file_that_is_no_urdf_is_refused_by_its_path_without_its_text) {
+  const test::Folder folder;
+  const std::string file = folder.write("thing.urdf", "root:x:0:0:root\nsecret");
+  for (const std::string scheme : {"", "file://"}) {
+    const std::string refusal = error_of(urdf(scheme + file));
+    test::expect_words(refusal, {"no URDF in '" + scheme + file + "'", "absolute path"});
+    EXPECT_EQ(refusal.find("secret"), std::string::npos) << refusal;
+  }
+}
+
 TEST(ObjectRequest, of_a_urdf_whose_only_shape_is_left_out_is_refused) {
   const std::string speck = "<collision><geometry><sphere radius=\"1e-6\"/></geometry></collision>";
   for (const std::string mass : {"", test::kInertial})

@@ -20,7 +20,7 @@ condition: "{condition}"
 gravity: {gravity}
 seed: {seed}
 session: {session}
-task: pick_and_place
+task: {task}
 simulated: {simulated}
 started: 2024-05-06T10:00:00Z
 order: [cube, flat_cuboid, long_cuboid]
@@ -45,12 +45,12 @@ def undrawn(*drawn):
 
 
 def write_session(folder, participant='P01', group='beginner', condition='implicit', gravity=(0, 0, 0),
-                  simulated=False, handedness='right', trials=(), ratings=(), seed=1, session=1):
+                  simulated=False, handedness='right', trials=(), ratings=(), seed=1, session=1, task='pick_and_place'):
     """`trials`: dicts with any of the columns, the rest empty; `ratings`: (question, score) pairs."""
     os.makedirs(folder, exist_ok=True)
     with open(os.path.join(folder, 'session.yaml'), 'w') as file:
         file.write(HEADER.format(participant=participant, group=group, handedness=handedness, condition=condition,
-                                 gravity=list(gravity), seed=seed, session=session, simulated=str(simulated).lower()))
+                                 gravity=list(gravity), seed=seed, session=session, task=task, simulated=str(simulated).lower()))
     write_table(os.path.join(folder, 'trials.csv'), list(TRIALS), [
         dict({'trial': i + 1, 'object': 'cube', 'condition': condition, 'repetition': 1, 'result': 'completed'}, **row)
         for i, row in enumerate(trials)])

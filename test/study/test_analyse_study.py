@@ -153,6 +153,26 @@ class Program(unittest.TestCase):
                                       'number\n$')
         self.assertFalse(os.path.exists(self.output))
 
+    def test_a_session_without_trials_is_named(self):
+        folders = [made_up_study.write_session(os.path.join(self.root, name), name, trials=[{'completion_time': 10}],
+                                               ratings=[('efficiency', 5)]) for name in ('P01', 'P02', 'P03')]
+        os.remove(os.path.join(folders[0], 'trials.csv'))
+        made_up_study.write_session(folders[1], 'P02', ratings=[('efficiency', 5)])
+        with made_up_study.undrawn():
+            done = self.run_program(self.root)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for told in (done.stderr, self.read('left_out.txt')):
+            self.assertIn('P01/trials.csv: no such file: only ratings of this session count\n', told)
+            self.assertIn('P02/trials.csv: has no trials: only ratings of this session count\n', told)
+            self.assertNotIn('P03/trials.csv', told)
+
+    def test_a_file_is_no_place_for_results(self):
+        made_up_study.write_study(os.path.join(self.root, 'a'), 1)
+        open(self.output, 'w').close()
+        done = self.run_program(self.root)
+        self.assertEqual((done.returncode, done.stderr),
+                         (1, 'analyse_study: %s: is not a folder; allowed: a folder, or a free name\n' % self.output))
+
     def test_trajectories_alone(self):
         hands = [self.write_hands('raw.csv', 0.004), self.write_hands('filtered.csv', 0.001)]
         self.assertEqual(self.run_program('--trajectory', *hands).returncode, 0)

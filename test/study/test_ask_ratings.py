@@ -90,11 +90,18 @@ class Terminal(Session):
                                                 'implicit,naturalness,1\nimplicit,efficiency,2\n'))
 
     def test_each_condition_is_asked_about(self):
+        made_up_study.write_session(self.folder, trials=[{}, {'condition': 'soft_pad'}])
         self.answer('4\n5\n')
-        self.answer('6\n7\n', '--condition', 'soft_pad, 1 g')
+        self.answer('6\n7\n', '--condition', 'soft_pad')
         rows = session_folder.read_session(self.folder).ratings
         self.assertEqual([(row['condition'], row['score']) for row in rows],
-                         [('implicit', 4), ('implicit', 5), ('soft_pad, 1 g', 6), ('soft_pad, 1 g', 7)])
+                         [('implicit', 4), ('implicit', 5), ('soft_pad', 6), ('soft_pad', 7)])
+
+    def test_a_condition_that_the_session_does_not_have_is_refused(self):
+        status, _, complaint = self.answer('4\n5\n', '--condition', 'implict')
+        self.assertEqual((status, complaint),
+                         (1, "ask_ratings: --condition 'implict': no trial of %s has it; allowed: implicit\n" % self.folder))
+        self.assertFalse(os.path.exists(self.file))
 
     def test_earlier_lines_stay_as_they_are_whatever_their_columns_and_last_line_end(self):
         earlier = 'remark,score,question,condition\n"slow, she said",2,efficiency,seed'

@@ -138,6 +138,23 @@ class Plans(Labs):
                                  ('veteran', 'training', 'implicit_training', False),
                                  ('veteran', 'test', 'implicit', True), ('veteran', 'test', 'soft_pad', True)])
 
+    def test_an_earlier_plan_stays(self):
+        words = ('--group', 'beginner:1', '--condition', 'implicit')
+        self.plan(*words)
+        path = os.path.join(self.root, 'plan.csv')
+        with open(path) as file:
+            earlier = file.read()
+        done = self.run_script('plan_study', *words, '--seed', '2', '--output', path)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("'%s' is there already; allowed: a file that is not" % path, done.stderr)
+        with open(path) as file:
+            self.assertEqual(file.read(), earlier)
+
+    def test_a_day_that_is_none_is_named(self):
+        done = self.run_script('plan_study', '--group', 'beginner:1', '--condition', 'implicit', '--first', '2026-13-01')
+        self.assertEqual((done.returncode, done.stderr.count('\n')), (2, 1))
+        self.assertIn("'2026-13-01' is not a day; allowed: YYYY-MM-DD", done.stderr)
+
     def test_no_argument_meets_a_shell(self):
         done = self.run_script('plan_study', '--group', 'a;b:3', '--condition', 'implicit')
         self.assertEqual((done.returncode, done.stderr.count('\n')), (1, 1))

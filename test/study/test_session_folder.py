@@ -106,6 +106,15 @@ class Refusals(Folders):
         self.edit('trials.csv', 'completion_time', 'time')
         self.assert_refused('one/trials.csv: line 1', "no column 'completion_time'")
 
+    def test_columns_that_no_comma_separates(self):
+        for separator, words in ((';', "separated by ';'; allowed: ','"), ('\t', "separated by tabs; allowed: ','")):
+            for file, columns in (('trials.csv', session_folder.TRIALS), ('events.csv', session_folder.CHANGES)):
+                with self.subTest(separator=separator, file=file):
+                    with open(os.path.join(self.folder(), file), 'w') as table:
+                        table.write(separator.join(columns) + '\n')
+                    self.assert_refused('one/%s: line 1: columns are ' % file, words)
+                    os.remove(os.path.join(self.root, 'one', file))
+
     def test_bad_numbers(self):
         for written in ('12.5s', 'nan', 'inf', '-1'):
             with self.subTest(written):
@@ -182,6 +191,18 @@ class Together(Folders):
         with self.assertRaisesRegex(StudyError, "two/session.yaml: participant 'P01' is a veteran here and a beginner "
                                                 'in .*one/session.yaml'):
             self.gather()
+
+    def test_different_tasks_are_refused_with_their_sessions(self):
+        self.folder('one'), self.folder('two', participant='P02', task='dock'), self.folder('three', participant='P03')
+        with self.assertRaisesRegex(StudyError, r"^sessions of different tasks: 'dock' \(.*/two\), 'pick_and_place' "
+                                                r'\(.*/one and 1 more\); allowed: sessions of one task$'):
+            self.gather()
+
+    def test_a_gravity_and_simulated_operators_may_have_a_task_of_their_own_which_is_said(self):
+        self.folder('one'), self.folder('two', simulated=True, task='dock')
+        self.assertFalse([note for note in self.gather().notes if 'tasks' in note])
+        self.folder('three', gravity=(0, 0, -9.80665), task='dock')
+        self.assertIn('the tasks differ between gravities: dock, pick_and_place', self.gather().notes)
 
     def test_other_conditions_gravities_and_a_simulated_namesake_are_not_the_same(self):
         self.folder('one'), self.folder('two', condition='seed'), self.folder('three', gravity=(0, 0, -9.80665))

@@ -217,6 +217,16 @@ TEST(NamedFile, is_a_path_or_in_the_first_folder_that_has_it) {
   EXPECT_EQ(find_named_file("task", theirs, ".yaml", {one.path()}), theirs);
 }
 
+TEST(NamedFile, may_have_any_extension_if_the_file_exists) {
+  const test::Folder here, folder;
+  const std::string known = folder.write("carry.yaml", "");
+  const test::WorkingFolder working(here);
+  for (const std::string name : {"tap_UP.YAML", "tap.yml", "tap", "carry"}) {
+    here.write(name, "");
+    EXPECT_EQ(find_named_file("task", name, ".yaml", {folder.path()}), name == "carry" ? known : name);
+  }
+}
+
 TEST(NamedFile, that_is_not_there_is_told_with_those_there_are) {
   const test::Folder one, other;
   one.write("b.yaml", "");

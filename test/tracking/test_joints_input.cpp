@@ -6,9 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "adult_hand.h"
+#include "mr_hand_interaction/stamp_check.h"
 
 namespace mrhi {
 namespace {
@@ -401,6 +403,37 @@ TEST(StampSteps, OfALoneFrameAreNone) {
   }
 }
 
+// A simulation that has been reset has no stream, and would start at any stamp.
+TEST_P(AClockThatSteps, PassesNoStampThatIsFarFromTheStream) {
+  JointsInput input;
+  std::vector<std::string> reasons;
+  for (int i = 0; i < 100; ++i) {
+    const Nanoseconds time = 5000 * kSecond + i * 10 * kMillisecond;
+    TrackerFrame frame = frame_of(hand_away(), time + (i >= 50 ? nanoseconds(GetParam()) : 0));
+    frame.receipt = time;
+    const SourceFrame taken = input.take(std::move(frame), [](Nanoseconds) { return Pose(); });
+    if (taken.frame) {
+      EXPECT_LE(std::abs(taken.frame->stamp - time), StampCheck::kBack) << i;
+    } else {
+      reasons.push_back(taken.reason);
+    }
+  }
+  const bool is_far = GetParam() > 0.0 || nanoseconds(GetParam()) < -StampCheck::kBack;
+  EXPECT_EQ(reasons, std::vector<std::string>(is_far ? 1 : 0, JointsInput::kStray));
+}
+
+// Where receipts prove nothing, StampCheck decides.
+TEST(StampSteps, LeaveOutOneFrameWhereReceiptsStandStill) {
+  JointsInput input;
+  int strays = 0;
+  for (int i = 0; i < 100; ++i) {
+    TrackerFrame frame = frame_of(hand_away(), kSecond + i * 10 * kMillisecond + (i >= 50 ? 5 * kSecond : 0));
+    frame.receipt = kSecond;
+    strays += input.take(std::move(frame), [](Nanoseconds) { return Pose(); }).reason == JointsInput::kStray;
+  }
+  EXPECT_EQ(strays, 1);
+}
+
 TEST(StampSteps, TellThatTheFirstFrameAloneWasOfAnotherClock) {
   StampSteps steps;
   steps.take(500'000'000 * kSecond, 0);
@@ -442,6 +475,28 @@ TEST(JointsInput, KeepsTheHandsOfATrackerTogetherWhenItsClockSteps) {
       EXPECT_GT(both, 290) << rate << " Hz, step " << step;
       EXPECT_LE(stray, 6) << rate << " Hz, step " << step;
     }
+  }
+}
+
+TEST(JointsInput, CountsFramesOfTheFasterHandWithoutOneOfTheOther) {
+  for (const int rate : {10, 60}) {  // of the left hand; the right one has 60
+    JointsInput input;
+    std::size_t sent = 0, hands = 0, unpaired = 0;
+    for (int i = 0; i < 600; ++i) {
+      for (const Side side : {Side::left, Side::right}) {
+        if (side == Side::left && i % (60 / rate) != 0) continue;
+        TrackerFrame frame = frame_of(hand_away(side), kSecond + i * kSecond / 60);
+        frame.stream = side == Side::left ? "left" : "right";
+        frame.side = side;
+        const SourceFrame taken = input.take(std::move(frame), [](Nanoseconds) { return Pose(); });
+        ++sent;
+        hands += taken.frame ? taken.frame->hands.size() : 0;
+        for (const auto& [kind, what] : taken.corrected) unpaired += kind == JointsInput::kUnpaired;
+      }
+    }
+    if (const auto rest = input.rest()) hands += rest->hands.size();
+    EXPECT_EQ(hands + unpaired, sent);
+    EXPECT_LE(unpaired, rate == 60 ? 1u : 500u);
   }
 }
 

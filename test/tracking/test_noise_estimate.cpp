@@ -212,7 +212,7 @@ class TwoTrackers : public ::testing::Test {
         frame.hands.push_back(in_world(joints));
       }
       lose_unseen_hands(stamp, configuration_.tracking.hold_time, hands_, events_);
-      track_hands(frame, configuration_, hands_, events_);
+      track_hands(frame, 1.0 / kRate, configuration_, hands_, events_);
     }
   }
   void others_come() { ids_ += 2; }
@@ -263,7 +263,7 @@ TEST_F(TwoTrackers, give_a_hand_of_the_other_side_nothing_of_it) {
 TEST_F(TwoTrackers, keep_it_through_a_short_loss) {
   frames(60, {Side::right});
   const double before = seen(Side::right);
-  frames(3, {});
+  frames(static_cast<int>(0.15 * kRate), {});
   frames(2, {Side::right});
   EXPECT_EQ(seen(Side::right), before);
 }

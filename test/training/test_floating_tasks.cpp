@@ -141,7 +141,7 @@ void throw_the_bag(FloatingTask& task, bool with_a_hand_on_the_rail) {
     const double x = std::clamp((t - kBegin) / kAccelerates, 0.0, 1.0);
     const double moved = kSpeed * (kAccelerates * x * x * x * (1.0 - 0.5 * x) + std::max(0.0, t - kOpens));
     const double off = around(0.03, smooth(t, 0.4)) + 0.5 * std::max(0.0, t - kOpens - 0.02);
-    if (t < kOpens + 0.2) hands.push_back(grip(2, Vector3(0.1 - moved, -0.05, 0.25), off));
+    if (t < kOpens + 0.1) hands.push_back(grip(2, Vector3(0.1 - moved, -0.05, 0.25), off));
     return hands;
   });
 }

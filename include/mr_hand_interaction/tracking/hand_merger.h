@@ -70,6 +70,8 @@ class HandPairs {
  public:
   /// Returns the frame that this one of a side completes, if any.
   std::optional<HandFrame> take(Side side, const HandFrame& frame);
+  /// True if the last take() dropped a frame that had waited.
+  bool has_dropped() const { return has_dropped_; }
   /// Returns the waiting frame, at the end of a recording.
   std::optional<HandFrame> rest();
 
@@ -82,6 +84,7 @@ class HandPairs {
   bool is_partner(Side side, Nanoseconds stamp) const;
 
   std::array<Stream, 2> streams_;
+  bool has_dropped_ = false;
   std::optional<HandFrame> waiting_;
   Side waiting_side_ = Side::left;
 };

@@ -117,9 +117,10 @@ struct PathWeights {
 /// State of one tracked hand.
 struct HandTrack {
   bool active = false;    ///< false: this slot is unused
-  bool held = false;      ///< missing in the last frame: keeps its pose for hold_time
+  bool held = false;      ///< missing in the last frame: slows down, and keeps its pose for hold_time
   bool appeared = false;  ///< re-acquired at the last frame, or jumped there
   bool emerged = false;   ///< re-acquired at the frame before: overlaps at its first motion are ignored
+  bool eases = false;     ///< returned after a brief loss: `current` approaches the filtered pose
   Hand previous;          ///< filtered pose at the previous frame
   Hand current;           ///< filtered pose at the last frame
   Nanoseconds last_seen = 0;
@@ -138,9 +139,9 @@ struct HandTrack {
 /// overshoots by at most kMaxOvershoot.
 void extend_path(double elapsed, HandTrack& track);
 
-/// Duration in which a hand catches up with one that moved by `way` [m] in the `away` seconds of its loss and
-/// continues at that speed. It limits the acceleration to 5 m/s^2, within 0.05 to 0.4 s.
-Nanoseconds rejoin_duration(double way, double away);
+/// Duration in which a hand catches up with one that is `distance` [m] ahead and moves at `speed` [m/s]. It
+/// limits the acceleration to 5 m/s^2, within 0.05 to 0.4 s.
+Nanoseconds rejoin_duration(double distance, double speed);
 
 /// The hand at `stamp` between its held pose and the tracked hand (minimum jerk: Flash & Hogan 1985).
 Hand catching_up(const Rejoin& rejoin, const Hand& tracked, Nanoseconds stamp);
