@@ -146,8 +146,7 @@ TEST(TrackerRate, a_frames_peak_of_a_phalanx_is_its_largest_force_in_one_of_the_
       std::map<int, Vector3> forces;
       for (const Contact& contact : simulation.state().contacts)
         forces.try_emplace(contact.key.capsule, Vector3::Zero()).first->second += contact.force;
-      for (const auto& [phalanx, force] : forces)
-        largest[phalanx] = std::max(largest[phalanx], force.norm());
+      for (const auto& [phalanx, force] : forces) largest[phalanx] = std::max(largest[phalanx], force.norm());
     }
     std::map<int, double> reported;
     for (const Contact& contact : simulation.end().contacts)
