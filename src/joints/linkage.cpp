@@ -89,7 +89,7 @@ LinkageMotion::Impulse LinkageMotion::about_first(int body, const Impulse& impul
 
 /// p += J' (P, L). A joint with the unit twist (s, a) about the first body's centre has s.P + a.L. A free
 /// root is the first body, with (P, L).
-void LinkageMotion::add_momentum(int body, const Impulse& impulse, Eigen::Ref<Vector> momenta) const {
+void LinkageMotion::add_momentum(int body, const Impulse& impulse, Eigen::Ref<Vector>& momenta) const {
   if (linkage_.bodies[body].joint == LinkageBody::kNone) {
     momenta.segment<3>(0) += impulse.linear;
     momenta.segment<3>(3) += impulse.moment;
@@ -163,8 +163,9 @@ void LinkageMotion::weigh() {
     const auto fill = [&](int column, const Vector3& velocity, const Vector3& spin) {
       const Vector3 impulse = moved.mass * velocity;
       const Impulse about = about_first(i, {impulse, moved.inertia * spin + arm.cross(impulse)});
+      Eigen::Ref<Vector> momenta = mass_.col(column);
       for (int above = i; above != LinkageBody::kNone; above = linkage_.bodies[above].parent)
-        add_momentum(above, about, mass_.col(column));
+        add_momentum(above, about, momenta);
     };
     if (link.joint == LinkageBody::kNone) {
       for (int axis = 0; axis < 3; ++axis) {

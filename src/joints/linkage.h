@@ -88,7 +88,7 @@ class LinkageMotion {
   /// Moment about the first body's centre.
   Impulse about_first(int body, const Impulse& impulse) const;
   /// Adds the momentum that an impulse about the first body's centre gives a body's own unknowns.
-  void add_momentum(int body, const Impulse& impulse, Eigen::Ref<Vector> momenta) const;
+  void add_momentum(int body, const Impulse& impulse, Eigen::Ref<Vector>& momenta) const;
 
   const Scene& scene_;
   const Linkage& linkage_;
