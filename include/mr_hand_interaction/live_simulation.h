@@ -39,6 +39,8 @@ class LiveSimulation {
   void remove(const std::string& name);
   /// Events by which hands would leave a body and its descendants if it were removed now. Throws likewise.
   std::vector<Event> events_if_removed(const std::string& name) const;
+  /// Events by which hands would leave all bodies if everything were reset now.
+  std::vector<Event> events_if_reset() const;
   /// Places a free body, at rest. Throws std::invalid_argument for an unknown name or a place out of bounds.
   void place(const std::string& name, const Pose& pose);
   /// Engages or releases the operators' restraints. Throws std::invalid_argument if there are none, or if an
@@ -49,6 +51,7 @@ class LiveSimulation {
   void reset();
 
  private:
+  std::vector<Event> events_if_left(const std::vector<std::size_t>& bodies) const;
   void go_on_with(const Scene& scene, const Configuration& configuration);
 
   std::unique_ptr<Simulation> simulation_;

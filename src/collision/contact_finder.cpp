@@ -91,8 +91,8 @@ void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, cons
   }
 }
 
-/// A phalanx presses a body no harder than with its whole stiffness at its deepest point, however many shapes
-/// the body consists of. With c_ij = max(0, n_i.n_j), as points on faces at right angles share nothing:
+/// Limits a phalanx's force on a body of several shapes to that of its whole stiffness at its deepest point.
+/// Points on perpendicular faces are independent, by c_ij = max(0, n_i.n_j):
 ///
 ///     share_i <- share_i min(1, max_j c_ij d_j / sum_j c_ij share_j d_j)
 void ContactFinder::share_between_shapes(std::size_t first) {

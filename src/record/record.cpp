@@ -282,6 +282,12 @@ void make(const Change& change, LiveSimulation& simulation) {
   std::visit(Making{simulation}, change);
 }
 
+std::vector<Event> events_ended_by(const Change& change, const LiveSimulation& simulation) {
+  if (const auto* remove = std::get_if<Delete>(&change)) return simulation.events_if_removed(remove->name);
+  if (std::holds_alternative<Reset>(change)) return simulation.events_if_reset();
+  return {};
+}
+
 std::string to_text(const Change& change) {
   return std::visit(InWords{}, change);
 }

@@ -243,6 +243,7 @@ class LogRun {
       SceneOptions options = scene_options(simulation().configuration());
       options.mesh_files = written_to(files_folder(), entry.files);
       prepare(change, options);
+      run_.events(events_ended_by(change, *simulation_), simulation());
       make(change, *simulation_);
     } catch (const std::exception& error) {
       run_.reject("change", error.what());

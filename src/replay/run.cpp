@@ -135,11 +135,20 @@ void ReplayRun::result(const Simulation& simulation) {
   writer_->write(result, simulation.state(), gravity_of(simulation));
   if (markers_) markers_->watch(simulation);
   summary.deepest_rendered = std::max(summary.deepest_rendered, simulation.deepest_rendered());
-  for (const Event& event : result.events) ++summary.events[event_name(event.kind)];
+  count(result.events);
   if (result.restarted) ++summary.restarts;
   if (last_stamp_ && !result.restarted) summary.simulated_seconds += to_seconds(result.stamp - *last_stamp_);
   last_stamp_ = result.stamp;
   if (!first_stamp_) first_stamp_ = last_stamp_;
+}
+
+void ReplayRun::events(const std::vector<Event>& events, const Simulation& simulation) {
+  writer_->write_events(events, simulation.result());
+  count(events);
+}
+
+void ReplayRun::count(const std::vector<Event>& events) {
+  for (const Event& event : events) ++summary.events[event_name(event.kind)];
 }
 
 void ReplayRun::reject(const std::string& reason, const std::string& detail) {

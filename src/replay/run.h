@@ -92,6 +92,8 @@ class ReplayRun {
              Simulation& simulation);
   /// Writes a result: of a frame, or of time without hands.
   void result(const Simulation& simulation);
+  /// Writes events of a change between frames.
+  void events(const std::vector<Event>& events, const Simulation& simulation);
   /// Counts a rejected frame or change; the first of each kind is printed.
   void reject(const std::string& reason, const std::string& detail);
   /// Counts a corrected fault of the input; the first of each kind is printed.
@@ -110,6 +112,8 @@ class ReplayRun {
   ProgressBar progress;
 
  private:
+  void count(const std::vector<Event>& events);
+
   std::string output_;
   std::string made_;  ///< the outermost folder that this run has created; empty: none
   std::unique_ptr<ResultWriter> writer_;

@@ -143,7 +143,7 @@ void ResultWriter::write(const FrameResult& result, const SimulationState& state
   for (const Hand& hand : result.tracked) write_palm(time, hand, state);
   for (const Hand& hand : result.tracked) write_hand(time, hand, nullptr);
   for (const RenderedHand& rendered : result.rendered) write_hand(time, rendered.hand, &rendered);
-  write_events(result);
+  write_events(result.events, result);
 }
 
 void ResultWriter::flush() {
@@ -219,13 +219,13 @@ void ResultWriter::write_hand(double time, const Hand& hand, const RenderedHand*
   }
 }
 
-void ResultWriter::write_events(const FrameResult& result) {
-  for (const Event& event : result.events) {
+void ResultWriter::write_events(const std::vector<Event>& events, const FrameResult& now) {
+  for (const Event& event : events) {
     const auto body = static_cast<std::size_t>(event.body);
     const bool has_body = event.body >= 0;
     table(kEvents).row(to_seconds(event.stamp - first_stamp_), event_name(event.kind),
                        has_body ? scene_->bodies[body].name : std::string(), event.hand_id, frame_,
-                       has_body && assist_force(body, result));
+                       has_body && assist_force(body, now));
   }
 }
 

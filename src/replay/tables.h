@@ -88,6 +88,8 @@ class ResultWriter {
 
   /// `gravity`: acts in the frame [m/s^2].
   void write(const FrameResult& result, const SimulationState& state, const Vector3& gravity);
+  /// `now`: the frame in which they happen, or after which.
+  void write_events(const std::vector<Event>& events, const FrameResult& now);
   /// Sets the scene of the following frames.
   void follow(const Scene& scene);
   void flush();
@@ -101,7 +103,6 @@ class ResultWriter {
   void write_contacts(double time, const FrameResult& result, const SimulationState& state);
   void write_palm(double time, const Hand& hand, const SimulationState& state);
   void write_hand(double time, const Hand& hand, const RenderedHand* rendered);
-  void write_events(const FrameResult& result);
 
   std::string folder_;
   const Scene* scene_;

@@ -18,7 +18,7 @@ constexpr std::size_t kMaxSmallIslandLinks = 16;
 /// Number of points that all sweeps of a large island's impact relax together, and the least number of
 /// sweeps.
 constexpr int kLargeIslandWork = 1500, kMinLargeIslandSweeps = 8;
-/// Joint velocities that all sweeps of an impact of linkages change together.
+/// Limit of unknowns times points times sweeps of an impact of linkages.
 constexpr Eigen::Index kLinkageWork = 200'000;
 /// Slowest approach that is an impact in a large island [m/s].
 constexpr double kMinImpactSpeed = 1e-3;

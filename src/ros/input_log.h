@@ -138,9 +138,9 @@ class InputLog {
 
   using SimulationInput = mr_hand_interaction::SimulationInput;
 
-  void change(const Change& change) { send(noted(change), {}); }
-  /// Notes a change that has files. Its input, without them, is for send().
-  SimulationInput noted(const Change& change) {
+  void change(const Change& change) { send(note_change(change), {}); }
+  /// Records a change, and returns its input without files, for send().
+  SimulationInput note_change(const Change& change) {
     note(change, simulation_, world_);
     ++sequence_;
     SimulationInput input = message(SimulationInput::CHANGE);

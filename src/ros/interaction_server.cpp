@@ -346,7 +346,7 @@ struct InteractionServer::Impl {
     const Change change = spawn;
     between_frames_.run([&] {
       mrhi::make(change, live_);
-      input = log_.noted(change);
+      input = log_.note_change(change);
       show_change();
     });
     log_.send(std::move(input), files_of(change));
@@ -373,7 +373,6 @@ struct InteractionServer::Impl {
   }
 
   std::string remove(const std::string& name) {
-    results_.publish_events(live_.events_if_removed(name));
     make(Delete{name});
     show_change();
     return "'" + name + "' is gone";
@@ -390,6 +389,7 @@ struct InteractionServer::Impl {
 
   /// Applies and logs a change of the simulation. All changes but spawn() use this function.
   void make(const Change& change) {
+    results_.publish_events(events_ended_by(change, live_));
     mrhi::make(change, live_);
     log_.change(change);
   }

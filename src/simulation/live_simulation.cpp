@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "../collision/overlap.h"
@@ -195,9 +196,19 @@ void LiveSimulation::remove(const std::string& name) {
 
 std::vector<Event> LiveSimulation::events_if_removed(const std::string& name) const {
   const Scene& scene = simulation_->scene();
+  return events_if_left(hanging_on(known_body(scene, name, false), scene));
+}
+
+std::vector<Event> LiveSimulation::events_if_reset() const {
+  std::vector<std::size_t> all(simulation_->scene().bodies.size());
+  std::iota(all.begin(), all.end(), 0);
+  return events_if_left(all);
+}
+
+std::vector<Event> LiveSimulation::events_if_left(const std::vector<std::size_t>& bodies) const {
   SimulationState state = simulation_->state();
   std::vector<Event> events;
-  for (const std::size_t body : hanging_on(known_body(scene, name, false), scene)) {
+  for (const std::size_t body : bodies) {
     const std::vector<Event> of_body = end_interactions_with(body, state);
     events.insert(events.end(), of_body.begin(), of_body.end());
   }

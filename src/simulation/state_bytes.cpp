@@ -258,11 +258,11 @@ class Parts {
     all(velocity, differences, intervals, noise, energy, extrapolated);
   }
   void one(HandTrack& part) {
-    auto& [active, held, appeared, emerged, eases, previous, current, last_seen, filter, rejoin, change, path,
-           mean_velocity] = part;
+    auto& [active, held, appeared, emerged, converges, previous, current, last_seen, filter, rejoin, change,
+           path, mean_velocity] = part;
     one(active);
     if (Visitor::kHashes && !active) return one(filter.noise, current.side);
-    all(held, appeared, emerged, eases);
+    all(held, appeared, emerged, converges);
     stamp(last_seen);
     all(previous, current, filter, change, rejoin, path, mean_velocity);
   }

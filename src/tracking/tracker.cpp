@@ -222,7 +222,7 @@ void appear(const Hand& hand, Nanoseconds stamp, HandTrack& track) {
   track.active = true;
   track.held = false;
   track.appeared = true;
-  track.emerged = track.eases = false;
+  track.emerged = track.converges = false;
   track.filter.restart(hand);
   track.previous = track.current = hand;
   track.path = HandPath();
@@ -276,14 +276,14 @@ Hand slowed(const Hand& before, const Hand& tracked, double speed, double elapse
   return hand;
 }
 
-/// Time in which a missing hand comes to rest; it has returned briefly, if within that time [s].
-constexpr double kBriefLoss = 0.1;
-/// Time constant at which a hand that has returned briefly approaches the filtered one [s], and the distance
-/// at which it has [m].
-constexpr double kEase = 0.03, kEased = 1e-5;
+/// Time in which a missing hand coasts to rest [s].
+constexpr double kCoastTime = 0.1;
+/// Time constant at which a hand that returned while it coasted converges to the filtered hand [s], and the
+/// distance at which it has converged [m].
+constexpr double kConvergenceTime = 0.03, kConvergedDistance = 1e-5;
 
-/// The hand moved on for `seconds` with its mean velocity.
-Hand moved_on(const HandTrack& track, double seconds) {
+/// Returns the track's hand after `seconds` at its mean velocity.
+Hand coast(const HandTrack& track, double seconds) {
   Hand hand = track.current;
   for (std::size_t p = 0; p < kHandPoints; ++p)
     if (has_point(hand, p)) hand_point(hand, p) += seconds * track.mean_velocity.points[p];
@@ -292,22 +292,22 @@ Hand moved_on(const HandTrack& track, double seconds) {
   return hand;
 }
 
-/// The filtered hand with `kept` of the offset that it had: of the hand that was shown from the filtered one.
-Hand with_offset(const Hand& shown, const Hand& had, double kept, const Hand& filtered) {
+/// Returns the filtered hand plus the fraction `kept` of the offset of `shown` from `reference`.
+Hand add_offset(const Hand& shown, const Hand& reference, double kept, const Hand& filtered) {
   Hand hand = filtered;
   for (std::size_t p = 0; p < kHandPoints; ++p)
-    if (has_point(filtered, p) && has_point(shown, p) && has_point(had, p))
-      hand_point(hand, p) += kept * (hand_point(shown, p) - hand_point(had, p));
-  const Quaternion offset = shown.palm.orientation * had.palm.orientation.conjugate();
+    if (has_point(filtered, p) && has_point(shown, p) && has_point(reference, p))
+      hand_point(hand, p) += kept * (hand_point(shown, p) - hand_point(reference, p));
+  const Quaternion offset = shown.palm.orientation * reference.palm.orientation.conjugate();
   hand.palm.orientation =
       (Quaternion::Identity().slerp(kept, offset) * filtered.palm.orientation).normalized();
   return hand;
 }
 
 /// Jumps are detected in raw samples: filtered poses lag, and the lag would look like a jump. A hand that
-/// returns briefly is filtered as if its tracker had sent no frames meanwhile. One that was lost for longer
-/// restarts its filter, because its old samples say nothing about the present, and catches up from the pose
-/// that was shown.
+/// returns while it coasts is filtered as if its tracker had sent no frames meanwhile. One that was lost for
+/// longer restarts its filter, because its old samples say nothing about the present, and catches up from the
+/// pose that was shown.
 void follow(const Hand& hand, Nanoseconds stamp, double elapsed, const Configuration& configuration,
             HandTrack& track) {
   const double away = to_seconds(stamp - track.last_seen);
@@ -316,29 +316,30 @@ void follow(const Hand& hand, Nanoseconds stamp, double elapsed, const Configura
     appear(hand, stamp, track);
     return;
   }
-  const bool returns_briefly = track.held && away <= kBriefLoss && track.rejoin.duration == 0;
-  if (track.held && !returns_briefly) {
+  const bool was_coasting = track.held && away <= kCoastTime && track.rejoin.duration == 0;
+  if (track.held && !was_coasting) {
     track.filter.clear();
     track.filter_change.reset();
-    track.eases = false;
+    track.converges = false;
     track.rejoin = {track.current, stamp, rejoin_duration(farthest_joint(track.current, hand), speed)};
   }
   track.emerged = track.appeared;
   track.appeared = track.held = false;
-  Hand shown, had;  // at one time
-  if (returns_briefly) {
-    shown = moved_on(track, elapsed);
-  } else if (track.eases) {
-    shown = track.current, had = track.filter.filtered;
+  Hand shown, reference;  // at the same time
+  if (was_coasting) {
+    shown = coast(track, elapsed);
+  } else if (track.converges) {
+    shown = track.current, reference = track.filter.filtered;
   }
   track.previous = track.current;
   track.current = filtered_through_change(hand, stamp, configuration, track);
   track.last_seen = stamp;
-  if (returns_briefly || track.eases) {
+  if (was_coasting || track.converges) {
     const Hand now = track.current;
-    track.current = with_offset(shown, returns_briefly ? now : had, std::exp(-elapsed / kEase), now);
-    track.eases = farthest_joint(track.current, now) > kEased;
-    if (!track.eases) track.current = now;
+    track.current =
+        add_offset(shown, was_coasting ? now : reference, std::exp(-elapsed / kConvergenceTime), now);
+    track.converges = farthest_joint(track.current, now) > kConvergedDistance;
+    if (!track.converges) track.current = now;
   }
   if (track.rejoin.duration > 0) {
     track.current = catching_up(track.rejoin, track.current, stamp);
@@ -349,17 +350,17 @@ void follow(const Hand& hand, Nanoseconds stamp, double elapsed, const Configura
   extend_path(elapsed, track);
 }
 
-/// Slows a missing hand down until it stands still: its last two poses are then the same. One that stopped
-/// dead would lose what it carries.
+/// Lets a missing hand coast to rest, so that it does not lose what it carries. At rest, its last two poses
+/// are the same.
 void hold(Nanoseconds stamp, double elapsed, HandTrack& track) {
   track.held = true;
   track.emerged = track.appeared;
   track.appeared = false;
   track.previous = track.current;
   const double away = to_seconds(stamp - track.last_seen);
-  const double spent = away / kBriefLoss;
+  const double spent = away / kCoastTime;
   if (spent < 1.0 && track.rejoin.duration == 0) {
-    track.current = moved_on(track, elapsed * (1.0 - spent * spent));
+    track.current = coast(track, elapsed * (1.0 - spent * spent));
     extend_path(elapsed, track);
   } else {
     track.path = HandPath();

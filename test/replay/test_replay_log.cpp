@@ -182,6 +182,23 @@ TEST(ReplayLog, a_recording_that_begins_in_the_middle_gives_the_live_run_s_hash_
   EXPECT_EQ(summary["gravity"][2].as<double>(), -0.1);
 }
 
+TEST(ReplayLog, a_grasp_that_a_deletion_or_a_reset_ends_has_its_end_among_the_events) {
+  const auto frames = test::motion_frames("grasp_cube", kRate, 0);
+  for (const Change& change : {Change(Delete{"cube"}), Change(Reset{})}) {
+    SCOPED_TRACE(to_text(change));
+    Live live("config/scenes/cube.urdf", Configuration());
+    live.play(frames, 0.0, 0.5);
+    live.begin_recording();
+    live.play(frames, 0.5, 3.0);
+    live.change(change);
+    live.play(frames, 3.0, 3.1);
+    const YAML::Node events = Replayed().run(live)["events"];
+    ASSERT_EQ(events["GRASP_BEGIN"].as<int>(0), 1);
+    EXPECT_EQ(events["GRASP_END"].as<int>(0), 1);
+    EXPECT_EQ(events["CONTACT_END"].as<int>(0), events["CONTACT_BEGIN"].as<int>());
+  }
+}
+
 /// The shipped hatch, `higher`.
 Spawn hatch(double higher) {
   Spawn spawn;

@@ -253,6 +253,7 @@ class ReplayTest(unittest.TestCase):
                 wait_until(lambda: self.status.phase == TrainingStatus.RUNNING, "the trial")
                 self.wait_for_inputs(200)
                 self.assertTrue(rospy.ServiceProxy("training_node/skip", Trigger)().success)
+            self.wait_for_inputs(100)  # so that the recorder has the last trial's events
         (bag,) = glob.glob(session + "/hands_*.bag")
         said = "\n".join(self.check_it_is_the_live_run(bag)["live_run"]["changes"])
         self.assertEqual(len(set(objects)), 3)

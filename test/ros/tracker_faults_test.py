@@ -61,9 +61,11 @@ class TrackerFaultsTest(unittest.TestCase):
         message.header.stamp, message.header.frame_id = stamp or rospy.Time.now(), "world"
         return message
 
-    def play(self, topic, count, message_of, kind=PoseArray, frames=None):
-        """The hand_frames that come of as many messages, evenly."""
-        publisher, before = rospy.Publisher(topic, kind, queue_size=100), len(self.frames)
+    def play(self, topic, count, message_of, kind=PoseArray, frames=None, refused=0):
+        """The hand_frames that come of as many messages, evenly. The publisher stays until all have been taken or refused, as
+        what it has not sent yet goes with it."""
+        key = "rejected: unusable hand"
+        publisher, before, refused_before = rospy.Publisher(topic, kind, queue_size=100), len(self.frames), self.counts[key]
         wait_until(lambda: publisher.get_num_connections() > 0, "a subscriber of " + topic)
         pace = rospy.Rate(1.0 / PERIOD)
         for i in range(count):
@@ -71,6 +73,8 @@ class TrackerFaultsTest(unittest.TestCase):
             pace.sleep()
         expected = before + (count if frames is None else frames)
         wait_until(lambda: len(self.frames) >= expected, "%d frames of %s" % (expected - before, topic))
+        if refused:
+            self.wait_for_count(key, refused_before + refused)
         publisher.unregister()
         return self.frames[before:]
 
@@ -109,10 +113,8 @@ class TrackerFaultsTest(unittest.TestCase):
         self.assertGreater(self.counts["order of joints recognised"] + 1, 0)
 
     def test_millimetres_are_refused_with_the_argument_that_converts(self):
-        before = self.counts["rejected: unusable hand"]
         millimetres = [[1000.0 * x for x in point] for point in joints()]
-        self.play("hands/right/point_cloud", 5, lambda i: self.pose_array(millimetres), frames=0)
-        self.wait_for_count("rejected: unusable hand", before + 5)
+        self.play("hands/right/point_cloud", 5, lambda i: self.pose_array(millimetres), frames=0, refused=5)
         self.assertIn("as of millimetres; allowed: metres; scale:=0.001", self.last["rejected: unusable hand"])
 
     def test_radii_and_confidence_of_a_point_cloud_are_used(self):

@@ -161,10 +161,10 @@ class Program(unittest.TestCase):
         with made_up_study.undrawn():
             done = self.run_program(self.root)
         self.assertEqual(done.returncode, 0, done.stderr)
-        for told in (done.stderr, self.read('left_out.txt')):
-            self.assertIn('P01/trials.csv: no such file: only ratings of this session count\n', told)
-            self.assertIn('P02/trials.csv: has no trials: only ratings of this session count\n', told)
-            self.assertNotIn('P03/trials.csv', told)
+        for text in (done.stderr, self.read('left_out.txt')):
+            self.assertIn('P01/trials.csv: no such file: only ratings of this session count\n', text)
+            self.assertIn('P02/trials.csv: has no trials: only ratings of this session count\n', text)
+            self.assertNotIn('P03/trials.csv', text)
 
     def test_a_file_is_no_place_for_results(self):
         made_up_study.write_study(os.path.join(self.root, 'a'), 1)

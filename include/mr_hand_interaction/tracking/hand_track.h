@@ -116,13 +116,13 @@ struct PathWeights {
 
 /// State of one tracked hand.
 struct HandTrack {
-  bool active = false;    ///< false: this slot is unused
-  bool held = false;      ///< missing in the last frame: slows down, and keeps its pose for hold_time
-  bool appeared = false;  ///< re-acquired at the last frame, or jumped there
-  bool emerged = false;   ///< re-acquired at the frame before: overlaps at its first motion are ignored
-  bool eases = false;     ///< returned after a brief loss: `current` approaches the filtered pose
-  Hand previous;          ///< filtered pose at the previous frame
-  Hand current;           ///< filtered pose at the last frame
+  bool active = false;     ///< false: this slot is unused
+  bool held = false;       ///< missing in the last frame: coasts to rest, and keeps its pose for hold_time
+  bool appeared = false;   ///< re-acquired at the last frame, or jumped there
+  bool emerged = false;    ///< re-acquired at the frame before: overlaps at its first motion are ignored
+  bool converges = false;  ///< returned while it coasted: `current` converges to the filtered pose
+  Hand previous;           ///< filtered pose at the previous frame
+  Hand current;            ///< filtered pose at the last frame
   Nanoseconds last_seen = 0;
   FilterMemory filter;
   Rejoin rejoin;
