@@ -1,7 +1,7 @@
 # Plugins of rviz: the display and the experimenter's panel. Built if rviz's headers are installed (Debian: librviz-dev).
 find_package(rviz QUIET)
 if(NOT rviz_FOUND)
-  message(STATUS "rviz's development files not found (librviz-dev): no display and no training panel")
+  message(WARNING "rviz's development files are not found: rviz will show no hands; install librviz-dev and build again")
   return()
 endif()
 # A plugin must use the Qt that rviz was built with: 5, or 6 from Debian 13 on.

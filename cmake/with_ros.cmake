@@ -39,7 +39,7 @@ endforeach()
 # Programs that draw rviz on a virtual screen; `setup` is sourced by them.
 install(PROGRAMS scripts/film scripts/screenshot DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(FILES scripts/setup scripts/virtual_screen DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-install(PROGRAMS scripts/explain_pictures.py scripts/film.py scripts/rviz_stage.py scripts/screenshot.py scripts/watch_demo.py
+install(PROGRAMS scripts/explain_pictures.py scripts/film.py scripts/free_port.py scripts/rviz_stage.py scripts/screenshot.py scripts/watch_demo.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY scripts/captures scripts/runs scripts/study scripts/web DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} PATTERN __pycache__ EXCLUDE)
 include(cmake/rviz.cmake)

@@ -18,7 +18,7 @@ FIGURE = re.compile(r'(<!-- figure ([a-z_]+)/([a-z0-9_]+) -->\n?)(.*?)(\n?<!-- /
 CHART = re.compile(r'\]\((?:docs/)?images/(\w+)\.png\)')
 PICTURES = ('explain', 'mug', 'web_ar', 'web_view')  # screenshots, which measure nothing
 COMMENT = re.compile(r'//[^\n]*|/\*.*?\*/', re.DOTALL)
-SOURCES = ('.cpp', '.h', '.py', '.yaml', '.R', '')  # names' ends; '' is a script
+SOURCES = ('.cpp', '.h', '.py', '.urdf', '.yaml', '.R', '')  # names' ends; '' is a script
 
 
 def pages():
@@ -148,13 +148,14 @@ def wrong_charts():
 def is_stale(name):
     """True if the code that a results file depends on is neither what it was measured with nor accepted since."""
     result = load(name)
-    sources = result['sources']
-    return hash_of(sources['paths']) not in (sources['sha256'], result.get('accepted', {}).get('sha256'))
+    known = [result['sources']['sha256']] + [note['sha256'] for note in result.get('accepted', [])]
+    return hash_of(result['sources']['paths']) not in known
 
 
-def accept(name, reason):
-    """Notes that the code as it is now gives the same figures, and why. Measuring again takes the note away."""
+def accept(name, reason, sources):
+    """Notes that the code as it is now gives the same figures, and why, after earlier such notes. Measuring again takes them away."""
     result = load(name)
-    result['accepted'] = {'because': reason, 'revision': revision(), 'date': datetime.date.today().isoformat(),
-                          'sha256': hash_of(result['sources']['paths'])}
+    result['sources']['paths'] = sources
+    note = {'because': reason, 'revision': revision(), 'date': datetime.date.today().isoformat(), 'sha256': hash_of(sources)}
+    result['accepted'] = result.get('accepted', []) + [note]
     write(results_path(name), json.dumps(result, indent=1, ensure_ascii=False) + '\n')

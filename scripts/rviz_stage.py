@@ -6,7 +6,6 @@ import math
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import threading
 import time
@@ -18,6 +17,7 @@ from std_msgs.msg import ColorRGBA
 from mr_hand_interaction.msg import RenderedView, SceneDescription
 from visualization_msgs.msg import Marker, MarkerArray
 
+from free_port import free_port
 from screenshot import has_scene
 from watch_demo import grab, join_master
 
@@ -52,12 +52,6 @@ def picture_view(name, width, height):
     config["Panels"] = []
     config["Window Geometry"].update({"Width": width, "Height": height, "Hide Left Dock": True, "Hide Right Dock": True})
     return config
-
-
-def free_port():
-    with contextlib.closing(socket.socket()) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 class Started:

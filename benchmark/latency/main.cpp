@@ -143,13 +143,26 @@ class Cost {
   double begin_;
 };
 
+/// The other hand, beyond the device's middle.
+mrhi::HandJoints mirrored(mrhi::HandJoints hand) {
+  const auto turn = [](std::optional<mrhi::Vector3>& point) {
+    if (point) point->x() *= -1.0;
+  };
+  ++hand.id;
+  hand.side = hand.side == mrhi::Side::right ? mrhi::Side::left : mrhi::Side::right;
+  turn(hand.palm_centre), turn(hand.wrist);
+  for (auto& finger : hand.joints)
+    for (auto& joint : finger) turn(joint);
+  return hand;
+}
+
 class Measurement {
  public:
   /// `topics`: outputs of the node to wait for, each with its header first, or for /tf and markers in the
   /// first element.
   Measurement(ros::NodeHandle& node, const mrhi::SyntheticHandOptions& options,
-              const std::vector<std::string>& topics)
-      : node_(node), rate_(options.rate), hand_(options) {
+              const std::vector<std::string>& topics, bool two_hands)
+      : node_(node), rate_(options.rate), hand_(options), two_hands_(two_hands) {
     prepare({});  // advertised with its type
     to_node_ = message_.advertise(node_, "/leap_motion/leap_device", kQueue);
     to_relay_ = message_.advertise(node_, "relay_in", kQueue);
@@ -177,6 +190,7 @@ class Measurement {
       const bool counted = i >= warm_up;
       if (i == warm_up) of_node.emplace("interaction_node"), of_relay.emplace("relay");
       mrhi::JointsFrame frame = hand_.next();
+      if (two_hands_ && !frame.hands.empty()) frame.hands.push_back(mirrored(frame.hands.front()));
       prepare(frame);
       for (auto& [topic, track] : answers_) track.sent(frame_stamp_, counted);
       to_node_.publish(message_);
@@ -212,6 +226,7 @@ class Measurement {
   ros::NodeHandle& node_;
   double rate_;  // frames per second to each of the two
   mrhi::SyntheticHand hand_;
+  bool two_hands_;
   ShapeShifter message_;
   ros::Publisher to_node_, to_relay_;
   std::vector<ros::Subscriber> listeners_;
@@ -236,7 +251,8 @@ int main(int argc, char** argv) {
   options.rate = parameters.param("rate", 120.0);
   options.motion = parameters.param<std::string>("motion", options.motion);
   std::istringstream topics(parameters.param<std::string>("topics", "rendered_view"));
-  Measurement measurement(node, options, {std::istream_iterator<std::string>(topics), {}});
+  Measurement measurement(node, options, {std::istream_iterator<std::string>(topics), {}},
+                          parameters.param("two_hands", false));
   ros::AsyncSpinner spinner(1);
   spinner.start();
   measurement.run(parameters.param("seconds", 30.0));

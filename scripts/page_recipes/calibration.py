@@ -24,7 +24,8 @@ def shortened(text):
         bold = [row for row in tests if '**' in row]
         plain = [row for row in tests if row not in bold]
         lines += bold if len(bold) < 4 else [_range_of_tests(population, '%d tests, above 5 %%', bold)]
-        lines += plain if len(plain) < 2 else [_range_of_tests(population, 'the other %d tests', plain)]
+        others = 'the other %d tests' if bold else 'all %d tests'
+        lines += plain if len(plain) < 2 else [_range_of_tests(population, others, plain)]
     return '\n'.join(lines)
 
 
@@ -36,5 +37,5 @@ def _range_of_tests(population, label, rows):
 
 RECIPES = {
     'study': Recipe('4 minutes', ['scripts/study/' + name for name in (
-        'calibration.py', 'exact.py', 'linear.py', 'mixed_model.py', 'pairwise.py', 'permutation.py')], study),
+        'anova.py', 'calibration.py', 'exact.py', 'linear.py', 'mixed_model.py', 'pairwise.py', 'permutation.py')], study),
 }

@@ -3,7 +3,7 @@ import os
 import shutil
 import tempfile
 
-from .measuring import LAWS, MeasurementError, Recipe, draw_printed, keep_chart, rows_of, run, table
+from .measuring import CORE, LAWS, MeasurementError, Recipe, draw_printed, keep_chart, rows_of, run, table
 
 RACE = ['benchmark/speed_accuracy', 'benchmark/plot_speed_accuracy.py']
 CHARTS = {'engines': {'speed_accuracy': 'summary', 'speed_accuracy_all': 'all', 'pinch_swing': 'pinch_swing'},
@@ -57,7 +57,7 @@ def cut_short_figures(rows):
 
 
 RECIPES = {
-    'engines': Recipe('15 minutes', LAWS + RACE, engines, list(CHARTS['engines'])),
+    'engines': Recipe('15 minutes', CORE + ['src/rendering'] + RACE, engines, list(CHARTS['engines'])),
     'crowds': Recipe('30 minutes', LAWS + RACE, crowds, list(CHARTS['crowds'])),
     'cut_short': Recipe('2 minutes', LAWS + ['benchmark/crowds', 'benchmark/plot_cut_short.py'], cut_short, ['cut_short']),
 }

@@ -208,8 +208,9 @@ def _newtons(row):
 
 
 RECIPES = {
-    'captures': Recipe('5 minutes', CORE + ['benchmark/real_grasps', 'scripts/captures'], captures),
-    'peers': Recipe('20 minutes', CORE + ['benchmark/real_grasps', 'benchmark/speed_accuracy/engines', 'benchmark/plot_real_grasps.py'],
+    'captures': Recipe('5 minutes', CORE + ['src/replay', 'benchmark/real_grasps', 'scripts/captures'], captures),
+    'peers': Recipe('20 minutes', CORE + ['src/replay', 'benchmark/real_grasps', 'benchmark/speed_accuracy/engines',
+                                         'benchmark/plot_real_grasps.py'],
                     peers, ['real_grasps']),
-    'recordings': Recipe('2 minutes', CORE + ['benchmark/real_grasps'], recordings),
+    'recordings': Recipe('2 minutes', CORE + ['src/replay', 'benchmark/real_grasps'], recordings),
 }

@@ -14,8 +14,11 @@ from page_figures import PACKAGE, chart_path
 Recipe = collections.namedtuple('Recipe', 'time sources measure charts', defaults=[()])
 sys.path.insert(0, os.path.join(PACKAGE, 'benchmark'))  # tables and charts
 PROGRAMS = os.path.join(PACKAGE, 'devel', 'lib', 'mr_hand_interaction')
-LAWS = ['src/collision', 'src/response', 'src/simulation', 'src/integration']
-CORE = LAWS + ['src/tracking', 'config/default.yaml']
+LAWS = ['include/mr_hand_interaction/' + part for part in (
+    'collision', 'configuration.h', 'integration', 'response', 'scene', 'simulation.h')] + ['src/' + module for module in (
+        'collision', 'configuration', 'integration', 'joints', 'math', 'response', 'scene', 'simulation')]
+CORE = LAWS + ['include/mr_hand_interaction/tracking', 'src/tracking', 'config/default.yaml', 'config/scenes']
+PEOPLE = CORE + ['include/mr_hand_interaction/synthetic', 'src/synthetic', 'src/training', 'config/tasks', 'config/hands']  # simulated
 
 
 class MeasurementError(Exception):

@@ -3,7 +3,7 @@ import os
 import shutil
 import tempfile
 
-from .measuring import CORE, MeasurementError, Recipe, run, table
+from .measuring import PEOPLE, MeasurementError, Recipe, run, table
 
 MODELS = ('implicit', 'seed', 'soft_pad', 'virtual_spring', 'penetration')
 
@@ -111,7 +111,6 @@ def _ratio_to(model, measure, pairs):
 
 
 RECIPES = {
-    'operators': Recipe('5 minutes', CORE + ['src/synthetic', 'src/training'], operators),
-    'registered': Recipe('1 minute', CORE + ['src/synthetic', 'src/training', 'scripts/study/analysis.py', 'scripts/study/study_data.py'],
-                         registered),
+    'operators': Recipe('5 minutes', PEOPLE + ['scripts/study'], operators),
+    'registered': Recipe('1 minute', PEOPLE + ['scripts/study'], registered),
 }

@@ -5,6 +5,8 @@ from .measuring import CORE, MeasurementError, Recipe, build, output, run, table
 
 # A name for the table, and what latency.launch is given.
 RUNS = (('`mixed`', ['scene:=mixed']), ('`mixed`', ['scene:=mixed', 'topics:=contacts haptics objects']), ('a pinch', []),
+        ('`mixed`, markers, at most 60 a second', ['scene:=mixed', 'topics:=markers']),
+        ('`mixed`, two hands', ['scene:=mixed', 'two_hands:=true', 'topics:=rendered_view']),
         ('`mixed`, 1000 a second', ['scene:=mixed', 'rate:=1000', 'topics:=rendered_view']),
         ('`mixed`, rviz draws in software', ['scene:=mixed', 'rviz:=true', 'topics:=rendered_view']))
 LAUNCH = ('source scripts/setup; source_ros "$devel/setup.bash"; choose_master; LIBGL_ALWAYS_SOFTWARE=1 timeout 120 '
@@ -42,6 +44,6 @@ def soak():
 
 
 RECIPES = {
-    'latency': Recipe('4 minutes, idle', ['src/nodes', 'src/ros', 'benchmark/latency'], latency),
+    'latency': Recipe('4 minutes, idle', ['src/nodes', 'src/rendering', 'src/ros', 'benchmark/latency'], latency),
     'soak': Recipe('15 minutes', [*CORE, 'benchmark/soak.cpp'], soak),
 }

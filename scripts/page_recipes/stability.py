@@ -2,7 +2,7 @@
 import os
 import tempfile
 
-from .measuring import Recipe, draw, rows_of_file, run, table
+from .measuring import LAWS, Recipe, draw, rows_of_file, run, table
 
 OVERLAP, SWAY, FRICTION = 0.002, 9.0, 0.8  # of stability_map: how deep fingertips press [m]; acceleration at most [m/s^2]
 OUTCOMES = ('stable', 'let_go', 'ejected', 'diverged')
@@ -66,6 +66,5 @@ def _beyond_dampers(cell):
 
 
 RECIPES = {
-    'stability': Recipe('3 minutes', ['src/collision', 'src/response', 'benchmark/stability_map.cpp', 'test/support/stability_map.h',
-                                      'benchmark/plot_stability_map.py'], stability, ['stability_map']),
+    'stability': Recipe('3 minutes', LAWS + ['benchmark/stability_map.cpp', 'test/support/stability_map.h', 'benchmark/plot_stability_map.py'], stability, ['stability_map']),
 }

@@ -4,7 +4,7 @@ import shutil
 import tempfile
 
 from page_figures import PACKAGE
-from .measuring import CORE, Recipe, run, table
+from .measuring import PEOPLE, Recipe, run, table
 
 GLOVE = os.path.join(PACKAGE, 'config', 'hands', 'eva_glove.yaml')
 GLOVED_HANDS = (('bare', 1.0), ('unpressurised glove (60 % of the strength)', 0.6), ('pressurised glove (20 %)', 0.2))
@@ -72,6 +72,6 @@ def afloat():
 
 
 RECIPES = {
-    'afloat': Recipe('2 minutes', CORE + ['src/synthetic', 'src/training', 'config/scenes', 'config/tasks'], afloat),
-    'gloves': Recipe('1 minute', CORE + ['src/synthetic', 'src/training', 'config/hands'], gloves),
+    'afloat': Recipe('2 minutes', PEOPLE, afloat),
+    'gloves': Recipe('1 minute', PEOPLE, gloves),
 }

@@ -46,15 +46,9 @@ constexpr double kGap = 0.002;              // between the arrow and the back of
 constexpr double kPointSize = 0.005;        // [m]
 constexpr double kPieces = 28.0;            // of a ring
 constexpr double kLift = 0.0006;            // of a ring above the surface [m]
-constexpr double kMinImpulse = 0.002;       // smallest impact with a ring [N s]
 constexpr double kHalfWidthImpulse = 0.02;  // impulse whose ring widens half as far as the widest [N s]
 constexpr double kMaxGrowth = 0.03;         // largest growth of a ring's radius [m]
 constexpr double kBroad = 0.004;            // initial width of an impact's ring [m]
-
-std_msgs::ColorRGBA phase_color(ContactPhase phase, const PictureStyle& style) {
-  if (phase == ContactPhase::impulse) return color(1.0, 1.0, 1.0);
-  return phase == ContactPhase::sticking ? style.sticks : style.slips;
-}
 
 Pose on_surface(const Vector3& point, const Vector3& normal) {
   return {point + kLift * normal, rotation_between(Vector3::UnitZ(), normal)};
@@ -63,7 +57,7 @@ Pose on_surface(const Vector3& point, const Vector3& normal) {
 /// Rings of one colour, set at each vertex too; rviz would otherwise light them and leave their sides black.
 void add_rings(const std::vector<Contact>& contacts, ContactPhase of_phase, const PictureStyle& style, int id,
                const MarkerLayer& layer) {
-  const std_msgs::ColorRGBA paint = phase_color(of_phase, style);
+  const std_msgs::ColorRGBA paint = of_phase == ContactPhase::sticking ? style.sticks : style.slips;
   Marker* rings = nullptr;
   for (const Contact& contact : contacts) {
     if (phase(contact) != of_phase) continue;
@@ -220,7 +214,7 @@ void add_contacts(const Scene& scene, const FrameResult& result, const Simulatio
     };
     add_balls("contacts", kPointSize, style.contacts);
     int id = 0;
-    for (const auto kind : {ContactPhase::sticking, ContactPhase::slipping, ContactPhase::impulse})
+    for (const auto kind : {ContactPhase::sticking, ContactPhase::slipping})
       add_rings(result.contacts, kind, style, id++, layers.layer("friction"));
     Marker& shares = add_balls("share", 2.0 * kPointSize, color(1.0, 1.0, 1.0));
     for (const Contact& contact : result.contacts) {
@@ -243,7 +237,7 @@ void add_contacts(const Scene& scene, const FrameResult& result, const Simulatio
 void ImpactMarkers::note(const std::vector<Contact>& contacts, const ros::Time& stamp) {
   for (const Contact& contact : contacts) {
     const double impulse = contact.impulse.norm();
-    if (impulse < kMinImpulse) continue;
+    if (impulse <= 0.0) continue;
     const auto known = std::find_if(impacts_.begin(), impacts_.end(), [&](const Impact& impact) {
       return impact.key.same_pair(contact.key) && seconds_between(impact.last, stamp) < 0.5 * kSeen;
     });
@@ -264,6 +258,7 @@ void ImpactMarkers::add(const ros::Time& now, const PictureStyle& style, const M
       impacts_.end());
   int id = 0;
   for (const Impact& impact : impacts_) {
+    if (impact.impulse < style.least_impulse) continue;
     const double gone = age(impact) / kSeen;
     const double strength = impact.impulse / (impact.impulse + kHalfWidthImpulse);
     const double inner = impact.radius + (0.35 + gone) * strength * kMaxGrowth;

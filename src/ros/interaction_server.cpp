@@ -278,8 +278,8 @@ struct InteractionServer::Impl {
     status.add("step time p50 [us]", step_times_.quantile_us(0.5));
     status.add("step time p99 [us]", step_times_.quantile_us(0.99));
     status.add("step time max [us]", step_times_.max_us());
-    status.add("hand to markers p50 [ms]", 1e-3 * picture_latency_.quantile_us(0.5));
-    status.add("hand to markers p99 [ms]", 1e-3 * picture_latency_.quantile_us(0.99));
+    status.add("hand to picture p50 [ms]", 1e-3 * picture_latency_.quantile_us(0.5));
+    status.add("hand to picture p99 [ms]", 1e-3 * picture_latency_.quantile_us(0.99));
     step_times_.clear();
     picture_latency_.clear();
   }

@@ -30,7 +30,8 @@ constexpr double kReleaseClearance = 0.0008;
 constexpr double kReleaseFraction = 0.9, kMinRelease = 0.015;
 /// Fingers that have opened by this fraction of that distance do not carry the body.
 constexpr double kOpensFraction = 0.5;
-/// A grip that has lost a side does not become active once the hand has opened by this [m].
+/// Once the hand has opened by this, a grip that has lost a side does not become active, and one that has
+/// lost both is not [m].
 constexpr double kMinOpening = 0.0015;
 /// No grip becomes active while its fingers open faster than this [m/s].
 constexpr double kOpensSpeed = 1.0;
@@ -448,13 +449,22 @@ bool GraspAssist::is_held_elsewhere(const SimulationState& state, const Grip& gr
   });
 }
 
+/// True if the hand has opened and nothing of it is at the object. A hand that returned into it is.
+bool GraspAssist::has_left(const SimulationState& state, const Grip& grip) const {
+  return grip.opened > kMinOpening && !state.hands[grip.hand].appeared &&
+         std::none_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
+           return (contact.touching() || contact.ignored) &&
+                  objects_.is_in(grip, contact.key.hand, contact.key.body);
+         });
+}
+
 void GraspAssist::begin_step(double fraction, double step, SimulationState& state) const {
   if (!objects_.any_graspable()) return;
   take_held_objects(true, fraction, state);
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
     const bool touching = objects_.touching_sides(grip, state.contacts).both();
-    if (!touching && is_held_elsewhere(state, grip)) {
+    if (!touching && (has_left(state, grip) || is_held_elsewhere(state, grip))) {
       grip.active = false;
       continue;
     }

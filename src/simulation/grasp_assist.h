@@ -47,6 +47,7 @@ class GraspAssist {
   bool ends(const SimulationState& state, Grip& grip) const;
   bool resumes(const SimulationState& state, Grip& grip) const;
   bool opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const;
+  bool has_left(const SimulationState& state, const Grip& grip) const;
   bool is_held_elsewhere(const SimulationState& state, const Grip& grip) const;
   void follow(SimulationState& state, Grip& grip);
   std::vector<Grip>::iterator find_grip(std::size_t slot, std::size_t body, SimulationState& state) const;

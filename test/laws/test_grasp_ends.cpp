@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "mr_hand_interaction/response/grip.h"
 #include "mr_hand_interaction/scene/scene.h"
+#include "mr_hand_interaction/synthetic/random.h"
 #include "support/reaching_hand.h"
 
 namespace mrhi {
@@ -64,6 +66,36 @@ TEST(GraspAssist, ends_within_a_millimetre_of_clearance) {
     EXPECT_LE(clearance, 0.001) << speed;
     EXPECT_FALSE(is_held(0, heavy.state())) << speed;
   }
+}
+
+// With 3 mm of noise on each point, the shipped hand and filter.
+TEST(GraspAssist, does_not_pull_through_noise_what_an_open_hand_no_longer_touches) {
+  constexpr double kRate = 120.0, kOpens = 1.0;
+  int supported = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    Simulation simulation(
+        testing::scene_of(testing::stiff_box(Vector3::Constant(2.0 * testing::kReachedHalf), 0.1)),
+        Configuration());
+    Random random(seed);
+    for (int i = 0; i < static_cast<int>((kOpens + 0.2) * kRate); ++i) {
+      const double t = i / kRate, opened = std::min(std::max(0.0, t - kOpens) / 0.1, 1.0);
+      Hand hand = testing::reaching(std::min(t / 0.2, 1.0) - opened, 0.0025, 0.0);
+      for (Capsule& capsule : hand.capsules)
+        capsule.start += random.gaussian_vector(0.003), capsule.end += random.gaussian_vector(0.003);
+      ASSERT_EQ(simulation.begin({testing::at(t), {hand}}), Rejection::none);
+      while (simulation.step()) {
+        const SimulationState& state = simulation.state();
+        const bool touches = std::any_of(state.contacts.begin(), state.contacts.end(),
+                                         [](const Contact& contact) { return contact.touching(); });
+        for (const Grip& grip : state.grips) {
+          supported += grip.active ? 1 : 0;
+          EXPECT_FALSE(grip.active && !touches && t > kOpens + 0.03) << seed << ' ' << t;
+        }
+      }
+      simulation.end();
+    }
+  }
+  EXPECT_GT(supported, 0);
 }
 
 /// What a cube does whose hand, `deep` in each face, is lost at 0.8 s for `loss` seconds, returns shifted by

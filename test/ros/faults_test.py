@@ -3,7 +3,6 @@
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -24,7 +23,9 @@ from visualization_msgs.msg import InteractiveMarkerFeedback, MarkerArray
 from mr_hand_interaction.msg import HandFrame, ObjectStateArray
 from mr_hand_interaction.srv import DeleteObject, SetParameter, SpawnObject, SpawnObjectRequest
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(HERE, os.pardir, os.pardir, "scripts")]
+from free_port import free_port  # noqa: E402
 from waiting import TIMEOUT, wait_until  # noqa: E402
 
 ROUNDS = 100  # of everything at once: a second's worth at 100 Hz
@@ -120,12 +121,6 @@ class Seen:
         before = dict(self.counts)
         for what in before:
             wait_until(lambda: self.counts[what] > before[what] + 3, what + " " + when)  # pylint: disable=cell-var-from-loop
-
-
-def free_port():
-    with socket.socket() as free:
-        free.bind(("", 0))
-        return free.getsockname()[1]
 
 
 class FaultsTest(unittest.TestCase):

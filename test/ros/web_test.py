@@ -8,7 +8,6 @@ import math
 import os
 import shutil
 import signal
-import socket
 import ssl
 import struct
 import subprocess
@@ -32,9 +31,10 @@ from mr_hand_interaction.msg import HandFrame, InteractionEvent, ObjectStateArra
 from mr_hand_interaction.srv import DeleteObject, SpawnObject, SpawnObjectRequest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path[:0] = [HERE, os.path.join(HERE, os.pardir, "web")]
+sys.path[:0] = [HERE, os.path.join(HERE, os.pardir, "web"), os.path.join(HERE, os.pardir, os.pardir, "scripts")]
 import doors  # noqa: E402
 import emulated_headset  # noqa: E402
+from free_port import free_port  # noqa: E402
 from launching import Launch  # noqa: E402
 from tracker_hands import joints, program, recording  # noqa: E402
 from waiting import wait_until  # noqa: E402
@@ -47,12 +47,6 @@ POST = ("<robot name='afloat'><link name='world'/>"
         "<link name='post'><collision><geometry><box size='0.1 0.1 0.1'/></geometry></collision></link>"
         "<joint name='far' type='fixed'><parent link='world'/><child link='post'/><origin xyz='0 0 -1'/></joint></robot>")
 GRASP = [InteractionEvent.GRASP_BEGIN, InteractionEvent.GRASP_END]
-
-
-def free_port():
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        return free.getsockname()[1]
 
 
 def float32(number):

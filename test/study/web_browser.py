@@ -3,11 +3,13 @@
 import base64
 import json
 import shutil
-import socket
 import subprocess
 import time
 import urllib.error
 import urllib.request
+
+import paths  # noqa: F401
+from free_port import free_port
 
 ELEMENT = 'element-6066-11e4-a52e-4f735466cecf'  # the key of an element's id in the protocol
 LIMIT = 180  # [s], far beyond what a reply needs, also of a page that is drawn by software on a busy machine
@@ -18,12 +20,6 @@ def missing():
     if not shutil.which('chromedriver'):
         return 'chromedriver is not installed (Debian: chromium-driver)'
     return ''
-
-
-def free_port():
-    with socket.socket() as free:
-        free.bind(('127.0.0.1', 0))
-        return free.getsockname()[1]
 
 
 class Browser:

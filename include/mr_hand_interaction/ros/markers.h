@@ -27,7 +27,8 @@ struct PictureStyle {
   std_msgs::ColorRGBA forces = color(0.97, 0.97, 0.97);
   std_msgs::ColorRGBA assist = color(0.800, 0.475, 0.655);  ///< forces of grasp assist
   std_msgs::ColorRGBA impacts = color(1.0, 0.85, 0.35);
-  double least_force = 0.1;  ///< smallest force with an arrow [N]
+  double least_force = 0.1;      ///< smallest force with an arrow [N]
+  double least_impulse = 0.002;  ///< smallest impact with a ring [N s]
 };
 
 /// Text of the view besides held objects: "implicit  |  gravity: none".

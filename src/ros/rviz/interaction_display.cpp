@@ -221,6 +221,7 @@ class InteractionDisplay : public rviz::Display {
     add_colour(friction, "Slips", &PictureStyle::slips);
     auto* forces = add_layer("forces", "Forces", true, "An arrow behind each loaded finger");
     add_colour(forces, "Color", &PictureStyle::forces);
+    add_colour(forces, "Assist", &PictureStyle::assist);
     const auto* least =
         add_number(forces, "Least [N]", style.least_force, "Smaller forces have no arrow and no number");
     readers_.push_back([least](PictureStyle& read) { read.least_force = least->getFloat(); });
@@ -229,6 +230,10 @@ class InteractionDisplay : public rviz::Display {
     auto* impacts =
         add_layer("impacts", "Impacts", true, "A ring at each impact of a hand, which fades within 0.15 s");
     add_colour(impacts, "Color", &PictureStyle::impacts);
+    const auto* least_impulse =
+        add_number(impacts, "Least [N s]", style.least_impulse, "Smaller impacts have no ring");
+    readers_.push_back(
+        [least_impulse](PictureStyle& read) { read.least_impulse = least_impulse->getFloat(); });
     add_layer("shadows", "Shadows", true, "Vertically below hands and objects");
     add_layer("text", "Text", true, "Held objects, contact model and gravity");
     add_layer("capsules", "Capsules", false, "The rendered hand as simulated");
