@@ -38,7 +38,6 @@ EXCEPTED = (  # what the command begins with, and why it is not run here
     ("roslaunch .*address:=192", "has an address of the user's machine; web.test runs it with this machine's own"),
     ("roslaunch mr_hand_interaction webcam.launch", "needs a webcam and MediaPipe; mediapipe_bridge.test runs the bridge"),
     ("rosrun mr_hand_interaction replay .*--serve", "serves until Ctrl-C; web.test runs it"),
-    ("benchmark/", "need recordings or results; benchmark/real_grasps/test has its own"),
     ("snakemake", "test_workflow runs it"),
     ("make ", "builds"),
     ("simulated_study", "as rosrun, below"),
