@@ -106,15 +106,15 @@ TEST(StampSteps, LeaveOutOneFrameWhereReceiptsStandStill) {
 TEST(StampSteps, TellThatTheFirstFrameAloneWasOfAnotherClock) {
   StampSteps steps;
   steps.take(500'000'000 * kSecond, 0);
-  int told = 0;
+  int first_off = 0;
   for (int i = 1; i < 20; ++i) {
     const Nanoseconds own = 1000 * kSecond + i * 10 * kMillisecond;
     const auto verdict = steps.take(own, i * 10 * kMillisecond);
     EXPECT_EQ(verdict.stamp, own);
-    told += verdict.first_was_off;
+    first_off += verdict.first_was_off;
     EXPECT_FALSE(verdict.is_step);
   }
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(first_off, 1);
 }
 
 /// As on a busy machine, where each topic's frames wait for another time. At the step three frames are in
