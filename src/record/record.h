@@ -82,7 +82,8 @@ void prepare(Change& change, const SceneOptions& options);
 /// Applies a change, in the node and in a replay alike. Throws as LiveSimulation does; then nothing has
 /// changed.
 void make(const Change& change, LiveSimulation& simulation);
-/// Events by which hands leave what a change deletes or resets, to be reported before make(). Throws likewise.
+/// Events by which hands leave what a change deletes or resets, to be reported before make(). Throws
+/// likewise.
 std::vector<Event> events_ended_by(const Change& change, const LiveSimulation& simulation);
 
 /// Description for messages: "spawn 'box'".
