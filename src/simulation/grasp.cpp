@@ -45,24 +45,17 @@ bool is_balanced(const Load& load, double max_imbalance) {
   return load.capsules >= 2 && load.sum.norm() <= max_imbalance * load.total;
 }
 
-/// True if the hands on a body grasp it together, and those without this one do not: each side of a box that
-/// two hands lift.
-bool grasps_with_others(const Scene& scene, int slot, int body, const std::vector<Contact>& contacts,
-                        double max_imbalance) {
-  const auto of_all = [body](const ContactKey& key) { return key.body == body; };
-  const auto of_others = [&](const ContactKey& key) { return key.body == body && key.hand != slot; };
-  return is_balanced(load_of(scene, contacts, of_all), max_imbalance) &&
-         !is_balanced(load_of(scene, contacts, of_others), max_imbalance);
-}
-
-/// True if the loads on all links balance: both arms of tongs are grasped, each loaded from one side.
-bool grasps_whole(const Scene& scene, int slot, int body, const std::vector<Contact>& contacts,
-                  double max_imbalance) {
-  const std::optional<int> root = floating_root(scene, body);
-  const auto of_linkage = [&](const ContactKey& key) {
-    return key.hand == slot && floating_root(scene, key.body) == root;
+/// True if the loads of the hand on an object balance, or those of all hands while those of the others do
+/// not: each side of a box that two hands lift.
+template <typename OfObject>
+bool grasps(const Scene& scene, int slot, const std::vector<Contact>& contacts, double max_imbalance,
+            const OfObject& of_object) {
+  const auto balances = [&](const auto& counts) {
+    return is_balanced(load_of(scene, contacts, counts), max_imbalance);
   };
-  return root && is_balanced(load_of(scene, contacts, of_linkage), max_imbalance);
+  if (balances([&](const ContactKey& key) { return key.hand == slot && of_object(key); })) return true;
+  return balances(of_object) &&
+         !balances([&](const ContactKey& key) { return key.hand != slot && of_object(key); });
 }
 
 bool is_near(const Hand& hand, int body, const ContactFinder& finder, const Body& shape_of, const Pose& pose,
@@ -88,10 +81,12 @@ InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactF
   const auto of_hand = [&](const ContactKey& key) { return key.hand == slot && key.body == body; };
   const Load load = load_of(scene, contacts, of_hand);
   const double max_imbalance = before == InteractionLevel::grasp ? kMaxLastingImbalance : kMaxImbalance;
-  if (is_balanced(load, max_imbalance)) return InteractionLevel::grasp;
-  if (load.capsules >= 1 && grasps_with_others(scene, slot, body, contacts, max_imbalance))
-    return InteractionLevel::grasp;
-  if (!scene.joints.empty() && load.capsules >= 1 && grasps_whole(scene, slot, body, contacts, max_imbalance))
+  // A linkage is grasped as a whole: both arms of tongs, each loaded from one side.
+  const std::optional<int> root = scene.joints.empty() ? std::nullopt : floating_root(scene, body);
+  const auto of_body = [&](const ContactKey& key) { return key.body == body; };
+  const auto of_linkage = [&](const ContactKey& key) { return floating_root(scene, key.body) == root; };
+  if (load.capsules >= 1 && (grasps(scene, slot, contacts, max_imbalance, of_body) ||
+                             (root && grasps(scene, slot, contacts, max_imbalance, of_linkage))))
     return InteractionLevel::grasp;
   if (load.capsules >= 1 || load.struck) return InteractionLevel::contact;
   const double distance = before == InteractionLevel::none ? kHoverBegins : kHoverEnds;

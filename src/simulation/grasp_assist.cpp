@@ -33,8 +33,8 @@ constexpr double kOpensFraction = 0.5;
 /// Once the hand has opened by this, a grip that has lost a side does not become active, and one that has
 /// lost both is not [m].
 constexpr double kMinOpening = 0.0015;
-/// No grip becomes active while its fingers open faster than this [m/s].
-constexpr double kOpensSpeed = 1.0;
+/// No grip begins, or becomes active, while its fingers open faster than this [m/s].
+constexpr double kMaxTakingSpeed = 0.03, kMaxActivationSpeed = 1.0;
 /// A grip waits this long for a lost hand [s]. It continues if the hand returns within this of the pose in
 /// which it held the body [m], [rad].
 constexpr double kMaxLoss = 1.05, kReturnDistance = 0.03, kReturnAngle = 0.5;
@@ -67,10 +67,19 @@ double opened_by(const HandTrack& track, double seconds, Grip& grip) {
   return grip.mean_aperture - grip.min_aperture;
 }
 
-/// True if the fingers opened fast in the last frame, beyond the tracker's noise.
-bool opens_now(const HandTrack& track, double seconds, const Grip& grip) {
+/// True if the fingers opened faster than this in the last frame, beyond the tracker's noise.
+bool opens_faster_than(double speed, const HandTrack& track, double seconds, const Grip& grip) {
   const double change = aperture(grip, track.current) - aperture(grip, track.previous);
-  return change - noise_margin(track) > kOpensSpeed * seconds;
+  return change - noise_margin(track) > speed * seconds;
+}
+
+/// True if the hand, at this fraction of the frame, has opened beyond the tracker's noise: of an active grip,
+/// beyond where both sides just touch the body.
+bool has_opened(const HandTrack& track, double fraction, const Grip& grip) {
+  const double before = aperture(grip, track.previous);
+  const double now = before + fraction * (aperture(grip, track.current) - before);
+  if (now - std::min(grip.min_aperture, before) - noise_margin(track) <= kMinOpening) return false;
+  return !grip.active || now > grip.touch_aperture + kReleaseClearance;
 }
 
 bool still_closes(const HandTrack& track, const Grip& grip) {
@@ -261,7 +270,7 @@ void GraspAssist::take_held_objects(bool seen, double fraction, SimulationState&
       OpposingContacts one_of_them;
       one_of_them.body = body, one_of_them.fingers_mask = 1 << 1;
       one_of_them.base = one_of_them.fingers = one->point;
-      take(slot, one_of_them, fraction, state);
+      take(seen, slot, one_of_them, fraction, state);
       continue;
     }
     const bool visited = std::any_of(contacts.begin(), one, [&](const Contact& before) {
@@ -280,7 +289,7 @@ void GraspAssist::take_held_objects(bool seen, double fraction, SimulationState&
     if (!found) found = objects_.opposing_contacts(slot, body, true, contacts);
     if (!found || (seen && found->depth <= kPadDepth)) continue;
     if (is_new || known->by_palm != found->by_palm || (found->fingers_mask & ~known->fingers) != 0)
-      take(slot, *found, fraction, state);
+      take(seen, slot, *found, fraction, state);
   }
 }
 
@@ -290,9 +299,9 @@ std::vector<Grip>::iterator GraspAssist::find_grip(std::size_t slot, std::size_t
                       [&](const Grip& grip) { return objects_.is_in(grip, slot, body); });
 }
 
-/// Begins a grip, in place of one that has fewer fingers. The springs of a grip on a linkage act on the link
-/// that the thumb or the palm touches.
-void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, double fraction,
+/// Begins a grip, unless a `seen` hand opens, in place of one that has fewer fingers. The springs of a grip
+/// on a linkage act on the link that the thumb or the palm touches.
+void GraspAssist::take(bool seen, std::size_t slot, const OpposingContacts& opposing, double fraction,
                        SimulationState& state) const {
   const std::size_t b = opposing.body;
   const Hand &from = state.hands[slot].previous, &to = state.hands[slot].current;
@@ -304,6 +313,9 @@ void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, doubl
   grip.by_palm = opposing.by_palm;
   grip.fingers = opposing.fingers_mask;
   const auto known = find_grip(slot, b, state);
+  if (seen && !grip.released && known == state.grips.end() &&
+      opens_faster_than(kMaxTakingSpeed, state.hands[slot], seconds_, grip))
+    return;
   if (known != state.grips.end()) {
     if (known->by_palm == grip.by_palm) grip.fingers |= known->fingers;
     state.grips.erase(known);
@@ -464,7 +476,10 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
     const bool touching = objects_.touching_sides(grip, state.contacts).both();
-    if (!touching && (has_left(state, grip) || is_held_elsewhere(state, grip))) {
+    const HandTrack& track = state.hands[grip.hand];
+    const bool present = !grip.lost && !track.appeared;
+    if (!touching && (has_left(state, grip) || is_held_elsewhere(state, grip) ||
+                      (present && has_opened(track, fraction, grip)))) {
       grip.active = false;
       continue;
     }
@@ -472,11 +487,11 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
                                      !objects_.is_opposed(grip.hand, grip.body, grip.by_palm, state.contacts)
                                : grip.opened <= kMinOpening;
     if (!grip.active && (!lost || grip.released || grip.lost)) continue;
-    place(fraction, until, state.hands[grip.hand], grip);
+    place(fraction, until, track, grip);
     leave_joints_free(step, state, grip);
     if (grip.active) yield_to_contacts(step, state, grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;
-    if (opens_now(state.hands[grip.hand], seconds_, grip)) continue;
+    if (opens_faster_than(kMaxActivationSpeed, track, seconds_, grip)) continue;
     grip.active = true;
     for (std::size_t i = 0; i < kGripPoints; ++i)
       grip.in_body[i] = state.bodies[grip.body].pose.to_local(grip.point[i]);
