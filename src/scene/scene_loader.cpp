@@ -281,14 +281,10 @@ void read_bodies(const std::string& source, const std::string& folder, UrdfDocum
 
 namespace fs = std::filesystem;
 
-bool is_inside(const Bounds& bounds, const Vector3& place) {
-  return (place.array() >= bounds.min.array()).all() && (place.array() <= bounds.max.array()).all();
-}
-
 void check_starts_in_bounds(const std::string& file, const Scene& scene) {
   for (const Body& body : scene.bodies) {
     const Vector3& start = body.start.position;
-    if (body.fixed || is_inside(scene.bounds, start)) continue;
+    if (body.fixed || scene.bounds.contains(start)) continue;
     throw SceneError(file + ": body '" + body.name + "': start " + text::vector(start) +
                      " m is out of bounds; allowed: " + text::vector(scene.bounds.min) + " to " +
                      text::vector(scene.bounds.max));
@@ -301,7 +297,7 @@ void widen_bounds(Scene& scene) {
   Bounds wide = scene.bounds;
   for (const Body& body : scene.bodies) {
     const Vector3 margin = Vector3::Constant(kMargin + body.bounding_radius), &start = body.start.position;
-    if (body.fixed || is_inside(scene.bounds, start)) continue;
+    if (body.fixed || scene.bounds.contains(start)) continue;
     wide.min = wide.min.cwiseMin(start - margin), wide.max = wide.max.cwiseMax(start + margin);
   }
   if (wide.min == scene.bounds.min && wide.max == scene.bounds.max) return;

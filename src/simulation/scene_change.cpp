@@ -125,15 +125,6 @@ FrameResult carried_over(const FrameResult& result, const Scene& before, const S
   return next;
 }
 
-std::vector<Event> end_interactions_with(std::size_t body, SimulationState& state) {
-  std::vector<Event> events;
-  for (std::size_t slot = 0; slot < state.hands.size(); ++slot) {
-    end_interaction({state.time, EventKind::hover_end, static_cast<int>(body), state.hands[slot].current.id},
-                    state.interactions[slot * state.bodies.size() + body], events);
-  }
-  return events;
-}
-
 void set_default_material(const Material& material, Scene& scene) {
   Scene changed = scene;
   for (Body& body : changed.bodies) {

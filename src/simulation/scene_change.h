@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/simulation.h"
 
@@ -15,9 +12,6 @@ SimulationState carried_over(const SimulationState& state, const Scene& before, 
 
 /// Converts the last result likewise, without its events.
 FrameResult carried_over(const FrameResult& result, const Scene& before, const Scene& after);
-
-/// Ends all interactions with a body, in the fixed order of events.
-std::vector<Event> end_interactions_with(std::size_t body, SimulationState& state);
 
 /// Sets the material of bodies that follow the parameters. Throws std::invalid_argument that names a body
 /// whose own values conflict with it; the scene is then unchanged.
