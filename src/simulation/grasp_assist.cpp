@@ -204,7 +204,7 @@ bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
     lose(track.last_seen, grip_pose(grip), grip);
     return grip.released;
   }
-  const TouchingSides touching = objects_.touching_sides(grip, state.contacts);
+  const TouchingGroups touching = objects_.touching_groups(grip, state.contacts);
   if (mode == GraspMode::never) {
     grip.released = true;
     grip.active = false;
@@ -219,7 +219,7 @@ bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
 }
 
 /// True if the hand has opened enough to release the body, or has left it.
-bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const {
+bool GraspAssist::opens(const SimulationState& state, const TouchingGroups& touching, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
   grip.opened = opened_by(track, seconds_, grip);
   const bool is_wide = grip.opened > release_opening(grip, kReleaseFraction);
@@ -445,7 +445,7 @@ bool GraspAssist::is_held_elsewhere(const SimulationState& state, const Grip& gr
   return std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& other) {
     return other.hand != grip.hand && !other.released && !other.lost &&
            objects_.same_object(other.body, grip.body) &&
-           objects_.touching_sides(other, state.contacts).both();
+           objects_.touching_groups(other, state.contacts).both();
   });
 }
 
@@ -463,7 +463,7 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
   take_held_objects(true, fraction, state);
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
-    const bool touching = objects_.touching_sides(grip, state.contacts).both();
+    const bool touching = objects_.touching_groups(grip, state.contacts).both();
     if (!touching && (has_left(state, grip) || is_held_elsewhere(state, grip))) {
       grip.active = false;
       continue;

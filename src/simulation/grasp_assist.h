@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "closing_hand.h"
 #include "grasp_objects.h"
 #include "mr_hand_interaction/simulation_state.h"
 #include "operators.h"
@@ -46,7 +45,7 @@ class GraspAssist {
   bool is_buried(std::size_t slot, const SimulationState& state) const;
   bool ends(const SimulationState& state, Grip& grip) const;
   bool resumes(const SimulationState& state, Grip& grip) const;
-  bool opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const;
+  bool opens(const SimulationState& state, const TouchingGroups& touching, Grip& grip) const;
   bool has_left(const SimulationState& state, const Grip& grip) const;
   bool is_held_elsewhere(const SimulationState& state, const Grip& grip) const;
   void follow(SimulationState& state, Grip& grip);

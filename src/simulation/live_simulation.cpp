@@ -6,12 +6,12 @@
 #include <stdexcept>
 
 #include "../collision/overlap.h"
+#include "../scene/limits.h"
 #include "../text/text.h"
 #include "../tracking/hand_filter.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene/scene.h"
-#include "scene_change.h"
 
 namespace mrhi {
 namespace {
@@ -104,6 +104,17 @@ void set_grasp(const std::string& name, const std::string& object, const std::st
     throw ParameterError("parameter '" + name + "': " + text::one_line(value, 60) +
                          " is not allowed; allowed: " + kGraspModes);
   body.grasp = *mode;
+}
+
+/// Sets the material of bodies that follow the parameters. Throws std::invalid_argument that names a body
+/// whose own values conflict with it.
+void set_default_material(const Material& material, Scene& scene) {
+  for (Body& body : scene.bodies) {
+    for (const MaterialField& field : material_fields())
+      if (!(body.own_material.*field.own)) body.material.*field.value = material.*field.value;
+    if (const auto conflict = material_conflict(body.material))
+      throw std::invalid_argument("body '" + body.name + "': " + *conflict);
+  }
 }
 
 bool same_filter(const Configuration& a, const Configuration& b) {
