@@ -59,7 +59,7 @@ void check_forces(const Joint& joint) {
   if (!joint.latch) return;
   check(joint, "latch at", joint.latch->at, kCoordinate);
   check(joint, "latch's force", joint.latch->force, kForce);
-  check(joint, "latch's reach", joint.latch->reach, kReach);
+  check(joint, "latch's reach", joint.latch->reach, kLatchReach);
 }
 
 void check_axis(const Joint& joint) {

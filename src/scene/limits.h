@@ -36,7 +36,7 @@ constexpr Range kForce{0.0, 1e5};
 constexpr Range kStiffness{0.0, 1e6};
 constexpr Range kRestitution{0.0, 1.0};
 constexpr Range kAxis{1e-6, 1000.0};  ///< length of an axis in a URDF
-constexpr Range kReach{1e-5, 10.0};
+constexpr Range kLatchReach{1e-5, 10.0};
 
 }  // namespace mrhi::joint_ranges
 

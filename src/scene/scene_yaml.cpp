@@ -25,13 +25,13 @@ JointSpring read_spring(const YamlElement& element) {
 Detents read_detents(const YamlElement& element) {
   Detents detents;
   for (const std::string& key : checked_keys(element, {"at", "force"})) {
-    const YamlElement given = element.at(key);
+    const YamlElement value = element.at(key);
     if (key == "force") {
-      detents.force = read_number(given);
+      detents.force = read_number(value);
       continue;
     }
-    if (!given.node.IsSequence()) given.refuse("a list of places");
-    for (std::size_t i = 0; i < given.node.size(); ++i) detents.at.push_back(read_number(given.at(i)));
+    if (!value.node.IsSequence()) value.refuse("a list of places");
+    for (std::size_t i = 0; i < value.node.size(); ++i) detents.at.push_back(read_number(value.at(i)));
   }
   return detents;
 }
@@ -47,14 +47,14 @@ Latch read_latch(const YamlElement& element) {
 void read_joint(const YamlElement& element, Joint& joint) {
   for (const std::string& key :
        checked_keys(element, {"start", "damping", "friction", "restitution", "spring", "detents", "latch"})) {
-    const YamlElement given = element.at(key);
-    if (key == "start") joint.start = read_number(given);
-    if (key == "damping") joint.damping = read_number(given);
-    if (key == "friction") joint.friction = read_number(given);
-    if (key == "restitution") joint.restitution = read_number(given);
-    if (key == "spring") joint.spring = read_spring(given);
-    if (key == "detents") joint.detents = read_detents(given);
-    if (key == "latch") joint.latch = read_latch(given);
+    const YamlElement value = element.at(key);
+    if (key == "start") joint.start = read_number(value);
+    if (key == "damping") joint.damping = read_number(value);
+    if (key == "friction") joint.friction = read_number(value);
+    if (key == "restitution") joint.restitution = read_number(value);
+    if (key == "spring") joint.spring = read_spring(value);
+    if (key == "detents") joint.detents = read_detents(value);
+    if (key == "latch") joint.latch = read_latch(value);
   }
 }
 
@@ -123,15 +123,15 @@ void read_operator(const std::string& name, const Element& element, Scene& scene
           ? std::vector<std::string>{}
           : checked_keys(element, {"mass", "inertia", "centre", "start", "twist", "restraint", "reach"});
   for (const std::string& key : keys) {
-    const Element given = element.at(key);
-    if (key == "mass") body.mass = read_number(given, kOperatorMass, " kg");
-    if (key == "inertia") inertia = read_vector(given, {0.01, 1000});
-    if (key == "centre") centre = read_vector(given, {-3, 3});
-    if (key == "twist") body.start_twist = read_six(given, {-10, 10}, {-10, 10}, false);
-    if (key == "restraint") op.restraint = read_body(given, true, scene);
-    if (key == "reach") op.reach = read_number(given, kRestraintReach, " m");
+    const Element value = element.at(key);
+    if (key == "mass") body.mass = read_number(value, kOperatorMass, " kg");
+    if (key == "inertia") inertia = read_vector(value, {0.01, 1000});
+    if (key == "centre") centre = read_vector(value, {-3, 3});
+    if (key == "twist") body.start_twist = read_six(value, {-10, 10}, {-10, 10}, false);
+    if (key == "restraint") op.restraint = read_body(value, true, scene);
+    if (key == "reach") op.reach = read_number(value, kRestraintReach, " m");
     if (key != "start") continue;
-    const Twist numbers = read_six(given, kStart, {-2 * M_PI, 2 * M_PI}, true);
+    const Twist numbers = read_six(value, kStart, {-2 * M_PI, 2 * M_PI}, true);
     start = {numbers.linear, Quaternion(Eigen::AngleAxisd(numbers.angular.z(), Vector3::UnitZ()) *
                                         Eigen::AngleAxisd(numbers.angular.y(), Vector3::UnitY()) *
                                         Eigen::AngleAxisd(numbers.angular.x(), Vector3::UnitX()))};
@@ -158,12 +158,12 @@ void read_tether(const Element& element, Scene& scene) {
       element.fail(std::string("has no '") + needed + "'; allowed: body, fixture and length always");
   }
   for (const std::string& key : keys) {
-    const Element given = element.at(key);
-    if (key == "body") tether.body = read_body(given, false, scene);
-    if (key == "fixture") tether.fixture = read_body(given, true, scene);
-    if (key == "at") at = read_vector(given, {-10, 10});
-    if (key == "anchor") anchor = read_vector(given, {-100, 100});
-    if (key == "length") tether.length = read_number(given, kTetherLength, " m");
+    const Element value = element.at(key);
+    if (key == "body") tether.body = read_body(value, false, scene);
+    if (key == "fixture") tether.fixture = read_body(value, true, scene);
+    if (key == "at") at = read_vector(value, {-10, 10});
+    if (key == "anchor") anchor = read_vector(value, {-100, 100});
+    if (key == "length") tether.length = read_number(value, kTetherLength, " m");
   }
   tether.at = scene.bodies[tether.body].link_in_body * at;
   tether.anchor = scene.bodies[tether.fixture].link_in_body * anchor;
@@ -201,8 +201,8 @@ void read_material(const Element& element, Body& body) {
   const std::vector<std::string> keys = checked_keys(element, text::names_of(material_fields()));
   for (const MaterialField& field : material_fields()) {
     if (std::find(keys.begin(), keys.end(), field.name) == keys.end()) continue;
-    const Element given = element.at(field.name);
-    body.material.*field.value = read_number(given, field.range, field.unit);
+    const Element value = element.at(field.name);
+    body.material.*field.value = read_number(value, field.range, field.unit);
     body.own_material.*field.own = true;
   }
   if (const auto conflict = material_conflict(body.material)) element.fail(*conflict);
@@ -215,9 +215,9 @@ void read_materials(const Element& element, Scene& scene) {
 
 void read_grasps(const Element& element, Scene& scene) {
   for (const std::string& link : checked_keys(element, graspable_bodies(scene))) {
-    const Element given = element.at(link);
-    const auto mode = given.node.IsScalar() ? grasp_mode(given.node.Scalar()) : std::nullopt;
-    if (!mode) given.refuse(kGraspModes);
+    const Element value = element.at(link);
+    const auto mode = value.node.IsScalar() ? grasp_mode(value.node.Scalar()) : std::nullopt;
+    if (!mode) value.refuse(kGraspModes);
     scene.bodies[*find_body(scene, link)].grasp = *mode;
   }
 }
@@ -237,9 +237,9 @@ void read_twists(const Element& element, Scene& scene) {
 }  // namespace
 
 Twist read_twist(const YamlElement& element) {
-  const auto given = yaml_numbers(element.node, 6);
-  const Twist twist = given ? Twist{Vector3(given->data()), Vector3(given->data() + 3)} : Twist{};
-  if (!given || !body_limits::kSpeed.contains(twist.linear.norm()) ||
+  const auto value = yaml_numbers(element.node, 6);
+  const Twist twist = value ? Twist{Vector3(value->data()), Vector3(value->data() + 3)} : Twist{};
+  if (!value || !body_limits::kSpeed.contains(twist.linear.norm()) ||
       !body_limits::kSpin.contains(twist.angular.norm()))
     element.refuse("six numbers [vx, vy, vz, wx, wy, wz], at most " + text::number(body_limits::kSpeed.max) +
                    " m/s and " + text::number(body_limits::kSpin.max) + " rad/s");

@@ -29,21 +29,21 @@ constexpr double kReleaseClearance = 0.0008;
 /// or to -kPadDepth, once it has opened by this fraction of the distance to touch_aperture, and by this [m].
 constexpr double kReleaseFraction = 0.9, kMinRelease = 0.015;
 /// Fingers that have opened by this fraction of that distance do not carry the body.
-constexpr double kOpensFraction = 0.5;
+constexpr double kOpeningFraction = 0.5;
 /// Once the hand has opened by this, a grip that has lost a side does not become active, and one that has
 /// lost both is not [m].
 constexpr double kMinOpening = 0.0015;
 /// No grip becomes active while its fingers open faster than this [m/s].
-constexpr double kOpensSpeed = 1.0;
+constexpr double kMaxOpeningSpeed = 1.0;
 /// A grip waits this long for a lost hand [s]. It continues if the hand returns within this of the pose in
 /// which it held the body [m], [rad].
 constexpr double kMaxLoss = 1.05, kReturnDistance = 0.03, kReturnAngle = 0.5;
 /// Stiffness of a grip over that of a contact: several fingers, on two sides.
 constexpr double kStiffnessRatio = 5.0;
 /// Distance from the springs to their centre [m].
-constexpr double kReach = 0.04;
-/// Time constant at which a grip's springs yield to the contacts [s].
-constexpr double kYieldTime = 0.1;
+constexpr double kSpringDistance = 0.04;
+/// Time constant at which a grip's springs comply with the contacts [s].
+constexpr double kComplianceTime = 0.1;
 /// Bond of a hand of unlimited strength [N].
 constexpr double kUnlimitedBond = 1e5;
 
@@ -68,12 +68,12 @@ double opened_by(const HandTrack& track, double seconds, Grip& grip) {
 }
 
 /// True if the fingers opened fast in the last frame, beyond the tracker's noise.
-bool opens_now(const HandTrack& track, double seconds, const Grip& grip) {
+bool is_opening(const HandTrack& track, double seconds, const Grip& grip) {
   const double change = aperture(grip, track.current) - aperture(grip, track.previous);
-  return change - noise_margin(track) > kOpensSpeed * seconds;
+  return change - noise_margin(track) > kMaxOpeningSpeed * seconds;
 }
 
-bool still_closes(const HandTrack& track, const Grip& grip) {
+bool is_closing(const HandTrack& track, const Grip& grip) {
   for (int finger = 0; finger < kFingers; ++finger)
     if (grip.takes_part(finger) && ClosingHand::closes(track, grip.by_palm, finger)) return true;
   return false;
@@ -132,7 +132,7 @@ void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, Simu
   seconds_ = seconds;
   closing_.clear();
   if (!objects_.any_graspable()) return state.grips.clear();
-  const auto is_over = [&](Grip& grip) { return ends(state, grip); };
+  const auto is_over = [&](Grip& grip) { return has_ended(state, grip); };
   state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), is_over), state.grips.end());
   for (Grip& grip : state.grips)
     if (!grip.lost) follow(state, grip);
@@ -195,7 +195,7 @@ bool GraspAssist::resumes(const SimulationState& state, Grip& grip) const {
 
 /// True if the grip is over. A hand that releases a body that it supported is still inside it: it touches it
 /// lightly until it has left the body, or closes on it again.
-bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
+bool GraspAssist::has_ended(const SimulationState& state, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
   if (grip.lost) return track.active && !resumes(state, grip) && !may_return(track, grip);
   const GraspMode mode = objects_.mode_of(grip.body);
@@ -210,8 +210,8 @@ bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
     grip.active = false;
     return touching.none();
   }
-  if (grip.released) return touching.none() || still_closes(track, grip);
-  if (seconds_ <= 0.0 || !opens(state, touching, grip)) return false;
+  if (grip.released) return touching.none() || is_closing(track, grip);
+  if (seconds_ <= 0.0 || !has_opened(state, touching, grip)) return false;
   // The links of a linkage follow the fingers as they open, like tongs: their contacts keep their force.
   grip.released = grip.active && objects_.object_of(grip.body).size() == 1;
   grip.active = false;
@@ -219,7 +219,7 @@ bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
 }
 
 /// True if the hand has opened enough to release the body, or has left it.
-bool GraspAssist::opens(const SimulationState& state, const TouchingGroups& touching, Grip& grip) const {
+bool GraspAssist::has_opened(const SimulationState& state, const TouchingGroups& touching, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
   grip.opened = opened_by(track, seconds_, grip);
   const bool is_wide = grip.opened > release_opening(grip, kReleaseFraction);
@@ -234,9 +234,10 @@ bool GraspAssist::opens(const SimulationState& state, const TouchingGroups& touc
 /// Moves the grip with its fingers, unless they open.
 void GraspAssist::follow(SimulationState& state, Grip& grip) {
   const HandTrack& track = state.hands[grip.hand];
-  grip.closes = still_closes(track, grip);
+  grip.closes = is_closing(track, grip);
   grip.in_palm_before = grip.in_palm;
-  if (grip.opened <= release_opening(grip, kOpensFraction)) grip.in_palm = moved_in_palm(grip, track.current);
+  if (grip.opened <= release_opening(grip, kOpeningFraction))
+    grip.in_palm = moved_in_palm(grip, track.current);
   if (!grip.active) return;
   if (grip.closes && scene_.bodies[grip.body].flies) closing_.push_back({grip.hand, grip.body});
   // A hand that is rendered before a fixture does not collide with what it holds there.
@@ -322,7 +323,7 @@ void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, doubl
   const Vector3 centre = 0.5 * (opposing.base + opposing.fingers);
   for (std::size_t i = 0; i < kGripPoints; ++i) {
     const Vector3 corner(i % 2 == 0 ? -1 : 1, i < 2 ? -1 : 1, i == 0 || i == 3 ? 1 : -1);
-    grip.in_hand[i] = from.palm.to_local(centre + kReach / std::sqrt(3.0) * corner);
+    grip.in_hand[i] = from.palm.to_local(centre + kSpringDistance / std::sqrt(3.0) * corner);
   }
   grip.pads = distal_ends(from);
   grip.in_palm_before = moved_in_palm(grip, from);
@@ -384,8 +385,8 @@ void GraspAssist::place(double fraction, double until, const HandTrack& track, G
 }
 
 /// Leaves to the contacts what they do alone: the springs' mean extension fades in the direction in which
-/// base and fingers press the body, and where it opposes their friction.
-void GraspAssist::yield_to_contacts(double step, const SimulationState& state, Grip& grip) const {
+/// base and fingers load the body, and where it opposes their friction.
+void GraspAssist::comply_with_contacts(double step, const SimulationState& state, Grip& grip) const {
   Vector3 line = Vector3::Zero(), friction = Vector3::Zero();
   for (const Contact& contact : state.contacts) {
     if (!contact.touching() || !objects_.is_in(grip, contact.key.hand, contact.key.body)) continue;
@@ -399,8 +400,9 @@ void GraspAssist::yield_to_contacts(double step, const SimulationState& state, G
     extension += (grip.point[i] - pose * grip.in_body[i]) / kGripPoints;
   Vector3 needless = extension.dot(line) * line;
   needless += std::min((extension - needless).dot(friction), 0.0) * friction;
-  const Vector3 yielded = pose.orientation.conjugate() * (std::min(step / kYieldTime, 1.0) * needless);
-  for (Vector3& end : grip.in_body) end += yielded;
+  const Vector3 compliance =
+      pose.orientation.conjugate() * (std::min(step / kComplianceTime, 1.0) * needless);
+  for (Vector3& end : grip.in_body) end += compliance;
 }
 
 /// Leaves the joints of a linkage to the fingers: the springs resist only the mean motion of the links that
@@ -474,9 +476,9 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
     if (!grip.active && (!lost || grip.released || grip.lost)) continue;
     place(fraction, until, state.hands[grip.hand], grip);
     leave_joints_free(step, state, grip);
-    if (grip.active) yield_to_contacts(step, state, grip);
+    if (grip.active) comply_with_contacts(step, state, grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;
-    if (opens_now(state.hands[grip.hand], seconds_, grip)) continue;
+    if (is_opening(state.hands[grip.hand], seconds_, grip)) continue;
     grip.active = true;
     for (std::size_t i = 0; i < kGripPoints; ++i)
       grip.in_body[i] = state.bodies[grip.body].pose.to_local(grip.point[i]);

@@ -71,15 +71,15 @@ TouchingGroups GraspObjects::touching_groups(const Grip& grip, const Contacts& c
 }
 
 bool GraspObjects::slips(const Grip& grip, const Contacts& contacts) const {
-  double push[2] = {}, slipping[2] = {};  // of fingers and of the base [N]
+  double normal[2] = {}, slipping[2] = {};  // of fingers and of the base [N]
   for (const Contact& contact : contacts) {
     if (!contact.touching() || !is_in(grip, contact.key.hand, contact.key.body)) continue;
-    const bool side = is_base(grip.by_palm, contact.key.capsule);
+    const bool group = is_base(grip.by_palm, contact.key.capsule);
     const double normal_force = std::max(0.0, -contact.force.dot(contact.normal));
-    push[side] += normal_force;
-    if (contact.friction != Friction::sticking) slipping[side] += normal_force;
+    normal[group] += normal_force;
+    if (contact.friction != Friction::sticking) slipping[group] += normal_force;
   }
-  return slipping[0] > 0.5 * push[0] || slipping[1] > 0.5 * push[1];
+  return slipping[0] > 0.5 * normal[0] || slipping[1] > 0.5 * normal[1];
 }
 
 bool GraspObjects::is_opposed(const Contact& contact, const Contacts& contacts, bool by_any_hand) const {

@@ -32,7 +32,7 @@ struct OpposingContacts {
   std::uint8_t fingers_mask = 0;  ///< a bit for each finger that opposes the base
 };
 
-/// Sides of a grip that touch its object.
+/// Contact groups of a grip that touch its object.
 struct TouchingGroups {
   bool base = false, fingers = false;
 
@@ -65,7 +65,7 @@ class GraspObjects {
   /// True if all fingers that touch the object take part in the grip.
   bool only_fingers_of(const Grip& grip, const Contacts& contacts) const;
   TouchingGroups touching_groups(const Grip& grip, const Contacts& contacts) const;
-  /// True if contacts slip that carry more than half of the push of one of the grip's sides.
+  /// True if contacts slip that carry more than half of the normal force of one of the grip's groups.
   bool slips(const Grip& grip, const Contacts& contacts) const;
   /// True if the same hand, or with `by_any_hand` any hand, touches the same object on a face opposite to
   /// this contact's, or will soon: contacts begin 1 mm before the surface.
@@ -99,7 +99,8 @@ class ClosingHand {
 
   /// True if a finger closes on the object, which lies between it and the thumb.
   bool closes_on(const HandTrack& track, const Object& object, const Poses& poses) const;
-  /// Distance from the object to one side of a grip, its base or its fingers: negative inside, limited [m].
+  /// Distance from the object to one contact group of a grip, its base or its fingers: negative inside,
+  /// limited [m].
   double gap(const Hand& hand, bool by_palm, bool of_base, const Object& object, const Poses& poses) const;
   /// True if the aperture between the finger's tip and its base is shrinking, as opposed to changing because
   /// the hand moves.

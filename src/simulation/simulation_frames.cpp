@@ -137,7 +137,7 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   if (!operators.none()) {
     const double left = frame_seconds() > 0.0 ? (1.0 - fraction) * frame_seconds() : step;
     if (!operators.begin_step(left, state)) {
-      operators.foresee(left);
+      operators.predict(left);
       list_near_hands();
     }
   }

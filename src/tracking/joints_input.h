@@ -115,7 +115,7 @@ class StampSteps {
     Nanoseconds stamp, receipt;
     Nanoseconds lead() const { return stamp - receipt; }
   };
-  Verdict accept(const Frame& frame, bool anew = false);
+  Verdict accept(const Frame& frame, bool restarts = false);
 
   std::optional<Frame> last_;  // accepted, with its original stamp
   std::optional<Frame> off_;   // the frame before, if it was off
