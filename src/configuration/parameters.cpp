@@ -88,13 +88,13 @@ ParameterEntry number(const std::string& name, const std::string& unit, const Ra
 }
 
 template <class T>
-struct Option {
+struct NamedValue {
   std::string name;
   T value;
 };
 
 template <class T, class Access>
-ParameterEntry choice(const std::string& name, const std::vector<Option<T>>& options, Access access) {
+ParameterEntry choice(const std::string& name, const std::vector<NamedValue<T>>& options, Access access) {
   return {name,
           text::joined(text::names_of(options)),
           [=](Configuration& configuration, const YAML::Node& node) {
@@ -134,7 +134,7 @@ std::string gravity_text(const Configuration& configuration) {
 template <class Kind, class Entry, class Access>
 ParameterEntry named_choice(const std::string& name, const std::vector<const Entry*>& entries,
                             Access access) {
-  std::vector<Option<Kind>> kinds;
+  std::vector<NamedValue<Kind>> kinds;
   for (const Entry* entry : entries) kinds.push_back({entry->name, {entry->name}});
   return choice(name, kinds, access);
 }
@@ -217,7 +217,6 @@ std::vector<ParameterEntry> material_parameters() {
   return entries;
 }
 
-/// All parameters, sorted by name.
 const std::vector<ParameterEntry>& parameter_table() {
   static const std::vector<ParameterEntry> table = [] {
     std::vector<ParameterEntry> all;

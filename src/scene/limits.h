@@ -20,6 +20,7 @@ constexpr Range kSpeed{0, 100};        ///< [m/s]
 constexpr Range kSpin{0, 1000};        ///< [rad/s]
 constexpr Range kColor{0, 1};          ///< red, green, blue and opacity, each
 constexpr Range kGravity{-100, 100};   ///< on each axis [m/s^2]
+constexpr int kMaxOperators = 4;       ///< of a scene: one for each hand
 
 }  // namespace mrhi::body_limits
 

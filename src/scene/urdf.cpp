@@ -38,7 +38,6 @@ class Complaints : public console_bridge::OutputHandler {
   std::string text_;
 };
 
-/// Appends a character as UTF-8.
 void append_utf8(std::uint32_t code, std::string& utf8) {
   const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;  // continuation bytes
   constexpr std::uint32_t kFirst[] = {0, 0xC0, 0xE0, 0xF0};
@@ -110,7 +109,6 @@ bool is_fixed(const urdf::Link& link) {
   return link.parent_joint->type == urdf::Joint::FIXED;
 }
 
-/// The places of all links, in one pass from the root.
 LinkPlaces places_in(const urdf::ModelInterface& model) {
   LinkPlaces places{{model.getRoot(), {model.getRoot(), Pose{}, Pose{}}}};
   std::vector<urdf::LinkConstSharedPtr> open{model.getRoot()};

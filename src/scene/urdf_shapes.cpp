@@ -80,8 +80,7 @@ std::optional<SizedShape> from_filename(const std::string& filename) {
   return shape;
 }
 
-/// Decodes percent-encoding.
-std::string decoded(const std::string& uri) {
+std::string percent_decoded(const std::string& uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
     int code = 0;
@@ -199,7 +198,7 @@ std::string ShapeReader::find_file(const std::string& uri) const {
   std::string path = uri;
   std::string file = find_path(path);
   if (file.empty()) std::replace(path.begin(), path.end(), '\\', '/'), file = find_path(path);
-  if (file.empty()) path = decoded(path), file = find_path(path);
+  if (file.empty()) path = percent_decoded(path), file = find_path(path);
   if (!file.empty()) return file;
   file = find_ignoring_case(folder_, path);
   if (!file.empty()) warnings_.add("files are found by names in another case", text::quoted(uri, 200));

@@ -103,26 +103,6 @@ bool is_balanced(const Load& load, double max_imbalance) {
   return load.capsules >= 2 && load.sum.norm() <= max_imbalance * load.total;
 }
 
-/// True if the hands on a body grasp it together, and those without this one do not: each side of a box that
-/// two hands lift.
-bool grasps_with_others(const Scene& scene, int slot, int body, const std::vector<Contact>& contacts,
-                        double max_imbalance) {
-  const auto of_all = [body](const ContactKey& key) { return key.body == body; };
-  const auto of_others = [&](const ContactKey& key) { return key.body == body && key.hand != slot; };
-  return is_balanced(load_of(scene, contacts, of_all), max_imbalance) &&
-         !is_balanced(load_of(scene, contacts, of_others), max_imbalance);
-}
-
-/// True if the loads on all links balance: both arms of tongs are grasped, each loaded from one side.
-bool grasps_whole(const Scene& scene, int slot, int body, const std::vector<Contact>& contacts,
-                  double max_imbalance) {
-  const std::optional<int> root = floating_root(scene, body);
-  const auto of_linkage = [&](const ContactKey& key) {
-    return key.hand == slot && floating_root(scene, key.body) == root;
-  };
-  return root && is_balanced(load_of(scene, contacts, of_linkage), max_imbalance);
-}
-
 bool is_near(const Hand& hand, int body, const ContactFinder& finder, const Body& shape_of, const Pose& pose,
              double distance) {
   for (int c = 0; c < kCapsules; ++c) {
@@ -146,10 +126,20 @@ InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactF
   const auto of_hand = [&](const ContactKey& key) { return key.hand == slot && key.body == body; };
   const Load load = load_of(scene, contacts, of_hand);
   const double max_imbalance = before == InteractionLevel::grasp ? kMaxLastingImbalance : kMaxImbalance;
+  const auto grasps = [&](auto&& counts) {
+    return is_balanced(load_of(scene, contacts, counts), max_imbalance);
+  };
   if (is_balanced(load, max_imbalance)) return InteractionLevel::grasp;
-  if (load.capsules >= 1 && grasps_with_others(scene, slot, body, contacts, max_imbalance))
-    return InteractionLevel::grasp;
-  if (!scene.joints.empty() && load.capsules >= 1 && grasps_whole(scene, slot, body, contacts, max_imbalance))
+  // Hands that grasp it together, but not without this one: each side of a box that two hands lift.
+  const auto of_all = [&](const ContactKey& key) { return key.body == body; };
+  const auto of_others = [&](const ContactKey& key) { return key.body == body && key.hand != slot; };
+  if (load.capsules >= 1 && grasps(of_all) && !grasps(of_others)) return InteractionLevel::grasp;
+  // The loads on all links balance: both arms of tongs are grasped, each loaded from one side.
+  const std::optional<int> root = floating_root(scene, body);
+  const auto of_linkage = [&](const ContactKey& key) {
+    return key.hand == slot && floating_root(scene, key.body) == root;
+  };
+  if (!scene.joints.empty() && load.capsules >= 1 && root && grasps(of_linkage))
     return InteractionLevel::grasp;
   if (load.capsules >= 1 || load.struck) return InteractionLevel::contact;
   const double distance = before == InteractionLevel::none ? kHoverBegins : kHoverEnds;
@@ -158,7 +148,6 @@ InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactF
                                                                     : InteractionLevel::none;
 }
 
-/// Tests the sum of its numbers: opposite infinities give NaN.
 bool is_finite(const BodyState& state) {
   return std::isfinite(state.pose.position.sum() + state.pose.orientation.coeffs().sum() +
                        state.linear_momentum.sum() + state.angular_momentum.sum());

@@ -93,11 +93,6 @@ Pose grip_pose(const Grip& grip) {
   return grip.in_palm * Pose{fit->to - fit->rotation * fit->from, Quaternion(fit->rotation)};
 }
 
-/// True if a hand that is seen again elsewhere may yet return to the body.
-bool may_return(const HandTrack& track, const Grip& grip) {
-  return to_seconds(track.last_seen - *grip.lost) <= kMaxLoss;
-}
-
 }  // namespace
 
 GraspAssist::GraspAssist(const Scene& scene, const ContactFinder& finder, const Operators& operators,
@@ -197,7 +192,8 @@ bool GraspAssist::resumes(const SimulationState& state, Grip& grip) const {
 /// lightly until it has left the body, or closes on it again.
 bool GraspAssist::has_ended(const SimulationState& state, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
-  if (grip.lost) return track.active && !resumes(state, grip) && !may_return(track, grip);
+  if (grip.lost)  // a hand that is seen again elsewhere may yet return to the body
+    return track.active && !resumes(state, grip) && to_seconds(track.last_seen - *grip.lost) > kMaxLoss;
   const GraspMode mode = objects_.mode_of(grip.body);
   if (!track.active || mode == GraspMode::free) return true;
   if (track.appeared) {  // it jumped away, which is as good as a loss
@@ -328,7 +324,7 @@ void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, doubl
   grip.pads = distal_ends(from);
   grip.in_palm_before = moved_in_palm(grip, from);
   grip.in_palm = moved_in_palm(grip, to);
-  place(fraction, fraction, state.hands[slot], grip);
+  place_springs(fraction, fraction, state.hands[slot], grip);
   for (std::size_t i = 0; i < kGripPoints; ++i)
     grip.in_body[i] = state.bodies[b].pose.to_local(grip.point[i]);
   const auto after = [](const Grip& x, const Grip& y) {
@@ -365,8 +361,7 @@ void GraspAssist::set_compliance(const SimulationState& state, double step, Cont
   contact.compliance = kept + step * std::max(0.0, -contact.normal.dot(velocity));
 }
 
-/// Sets position and velocity of the springs' ends on the hand.
-void GraspAssist::place(double fraction, double until, const HandTrack& track, Grip& grip) const {
+void GraspAssist::place_springs(double fraction, double until, const HandTrack& track, Grip& grip) const {
   const Pose from = track.previous.palm * grip.in_palm_before;
   const Pose to = track.current.palm * grip.in_palm;
   for (std::size_t i = 0; i < kGripPoints; ++i) {
@@ -442,7 +437,6 @@ double GraspAssist::offset(const SimulationState& state, const Grip& grip) const
   return largest;
 }
 
-/// True if another hand has the object between both of its contact groups.
 bool GraspAssist::is_held_elsewhere(const SimulationState& state, const Grip& grip) const {
   return std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& other) {
     return other.hand != grip.hand && !other.released && !other.lost &&
@@ -474,7 +468,7 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
                                      !objects_.is_opposed(grip.hand, grip.body, grip.by_palm, state.contacts)
                                : grip.opened <= kMinOpening;
     if (!grip.active && (!lost || grip.released || grip.lost)) continue;
-    place(fraction, until, state.hands[grip.hand], grip);
+    place_springs(fraction, until, state.hands[grip.hand], grip);
     leave_joints_free(step, state, grip);
     if (grip.active) comply_with_contacts(step, state, grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;

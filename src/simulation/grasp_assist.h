@@ -53,7 +53,7 @@ class GraspAssist {
   void take_held_objects(bool seen, double fraction, SimulationState& state) const;
   void take(std::size_t slot, const OpposingContacts& opposing, double fraction,
             SimulationState& state) const;
-  void place(double fraction, double until, const HandTrack& track, Grip& grip) const;
+  void place_springs(double fraction, double until, const HandTrack& track, Grip& grip) const;
   void comply_with_contacts(double step, const SimulationState& state, Grip& grip) const;
   void leave_joints_free(double step, SimulationState& state, Grip& grip) const;
   double offset(const SimulationState& state, const Grip& grip) const;

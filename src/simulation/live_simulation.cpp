@@ -61,19 +61,15 @@ void check_free_places(const Simulation& simulation, std::size_t added) {
   }
 }
 
-std::string names_of(const Scene& scene, bool free_only) {
-  std::vector<std::string> names;
-  for (const Body& body : scene.bodies) {
-    if (!free_only || !body.fixed) names.push_back(body.name);
-  }
-  return text::joined_or_none(names);
-}
-
 std::size_t known_body(const Scene& scene, const std::string& name, bool free_only) {
-  const std::optional<int> found = find_body(scene, name);
-  if (found && !(free_only && scene.bodies[*found].fixed)) return static_cast<std::size_t>(*found);
+  std::vector<std::string> names;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (free_only && scene.bodies[b].fixed) continue;
+    if (scene.bodies[b].name == name) return b;
+    names.push_back(scene.bodies[b].name);
+  }
   throw std::invalid_argument("no object '" + text::one_line(name, 60) +
-                              "'; allowed: " + names_of(scene, free_only));
+                              "'; allowed: " + text::joined_or_none(names));
 }
 
 void check_no_joint(const Scene& scene, int body) {
@@ -86,7 +82,6 @@ void check_no_joint(const Scene& scene, int body) {
 
 const std::string kGrasp = "grasp/";  // prefix of parameters of single objects
 
-/// Throws ParameterError.
 std::size_t graspable_body(const std::string& name, const std::string& object, const Scene& scene) {
   const std::vector<std::string> known = graspable_bodies(scene);
   if (std::find(known.begin(), known.end(), object) != known.end())
@@ -96,7 +91,6 @@ std::size_t graspable_body(const std::string& name, const std::string& object, c
                        "' that can be grasped by itself; allowed: " + text::joined_or_none(known));
 }
 
-/// Throws ParameterError.
 void set_grasp(const std::string& name, const std::string& object, const std::string& value, Scene& scene) {
   Body& body = scene.bodies[graspable_body(name, object, scene)];
   const auto mode = grasp_mode(value);

@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "../response/impact.h"
+#include "../scene/limits.h"
 
 namespace mrhi {
 namespace {
+
+static_assert(body_limits::kMaxOperators == kMaxHands, "at most one operator for each hand");
 
 /// Largest departure of an operator's hands from their predicted path, at which neighbours are listed again
 /// [m]. 100 N move 80 kg by 0.04 mm within a frame at 120 Hz.
@@ -48,22 +51,15 @@ Operators::Operators(const Scene& scene)
   on_fixtures_.reserve(64 * kMaxHands);
 }
 
-const Operator& Operators::owner(std::size_t slot, const SimulationState& state) const {
-  return scene_.operators[state.hands[slot].current.id % scene_.operators.size()];
-}
-
 Pose Operators::frame(const Operator& op, const SimulationState& state) const {
   const auto body = static_cast<std::size_t>(op.body);
   return state.bodies[body].pose * scene_.bodies[body].link_in_body;
 }
 
-const CarrierMotion* Operators::carrier(std::size_t slot) const {
-  return none() ? nullptr : &carriers_[owners_[slot]];
-}
-
 Pose Operators::in_hands_frame(std::size_t slot, std::size_t body, const SimulationState& state) const {
   if (none()) return state.bodies[body].pose;
-  return frame(owner(slot, state), state).inverse() * state.bodies[body].pose;
+  const Operator& owner = scene_.operators[state.hands[slot].current.id % scene_.operators.size()];
+  return frame(owner, state).inverse() * state.bodies[body].pose;
 }
 
 void Operators::end_frame(const SimulationState& state) {

@@ -31,7 +31,9 @@ class Operators {
   const CarriedFrame* carried(std::size_t slot) const { return none() ? nullptr : &carried_[owners_[slot]]; }
 
   /// Motion of the operator of the hand in a slot; null for a hand that is tracked in world.
-  const CarrierMotion* carrier(std::size_t slot) const;
+  const CarrierMotion* carrier(std::size_t slot) const {
+    return none() ? nullptr : &carriers_[owners_[slot]];
+  }
   /// The bodies of hands' operators, by slot; null without operators.
   const std::array<int, kMaxHands>* bodies_of_hands() const { return none() ? nullptr : &bodies_of_hands_; }
   /// A body's pose in the frame in which a hand is tracked.
@@ -50,7 +52,6 @@ class Operators {
   void respond(ContactStep& step, const std::vector<char>& restrained);
 
  private:
-  const Operator& owner(std::size_t slot, const SimulationState& state) const;
   Pose frame(const Operator& op, const SimulationState& state) const;
   Twist react(const ContactStep& step, int body) const;
   void note_momenta(std::size_t body, const SimulationState& state);

@@ -69,22 +69,10 @@ bool renumber(const Places& places, std::uint16_t& body) {
   return place.has_value();
 }
 
-bool renumber(const Places& places, Contact& contact) {
-  return renumber(places, contact.key.body);
-}
-
-bool renumber(const Places& places, BodyContact& contact) {
-  return renumber(places, contact.key.a) && renumber(places, contact.key.b);
-}
-
-bool renumber(const Places& places, Grip& grip) {
-  return renumber(places, grip.body);
-}
-
-/// Renumbers the bodies of all items, and drops those of bodies that are no longer there.
-template <typename Item>
-void move(const Places& places, std::vector<Item>& items) {
-  const auto is_gone = [&](Item& item) { return !renumber(places, item); };
+/// Keeps the items for which `stays` returns true; it also renumbers their bodies.
+template <typename Item, typename Stays>
+void keep_if(std::vector<Item>& items, const Stays& stays) {
+  const auto is_gone = [&](Item& item) { return !stays(item); };
   items.erase(std::remove_if(items.begin(), items.end(), is_gone), items.end());
 }
 
@@ -143,9 +131,11 @@ SimulationState carried_over(const SimulationState& state, const Scene& before, 
   }
   carry_joints(state, before, after, next);
   carry_restraints(state, before, after, next);
-  move(places, next.contacts);
-  move(places, next.body_contacts);
-  move(places, next.grips);
+  keep_if(next.contacts, [&](Contact& contact) { return renumber(places, contact.key.body); });
+  keep_if(next.body_contacts, [&](BodyContact& contact) {
+    return renumber(places, contact.key.a) && renumber(places, contact.key.b);
+  });
+  keep_if(next.grips, [&](Grip& grip) { return renumber(places, grip.body); });
   next.interactions = moved(places, after.bodies.size(), state);
   for (std::size_t b = 0; b < after.bodies.size(); ++b) {
     if (!was_there[b]) mark_appeared(b, next);
@@ -156,7 +146,8 @@ SimulationState carried_over(const SimulationState& state, const Scene& before, 
 /// The last result likewise, without its events.
 FrameResult carried_over(const FrameResult& result, const Scene& before, const Scene& after) {
   FrameResult next = result;
-  move(places_in(before, after), next.contacts);
+  const Places places = places_in(before, after);
+  keep_if(next.contacts, [&](Contact& contact) { return renumber(places, contact.key.body); });
   next.events.clear();
   return next;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mr_hand_interaction/scene/save_scene.h"
 #include "state_bytes.h"
 
 namespace mrhi {
@@ -43,6 +44,21 @@ void place(std::size_t body, const BodyState& placed, SimulationState& state) {
   mark_appeared(body, state);
 }
 
+Scene scene_as_it_is(const Scene& scene, const std::vector<BodyState>& bodies,
+                     const std::vector<JointState>& joints) {
+  Scene now = scene;
+  for (std::size_t b = 0; b < now.bodies.size(); ++b) {
+    if (now.bodies[b].fixed) continue;
+    now.bodies[b].start = bodies[b].pose;
+    now.bodies[b].start_twist = twist_of(scene.bodies[b], bodies[b]);
+  }
+  for (std::size_t j = 0; j < now.joints.size(); ++j) {
+    Joint& joint = now.joints[j];
+    joint.start = std::min(std::max(joints[j].position, joint.lower), joint.upper);
+  }
+  return now;
+}
+
 namespace {
 
 bool is_unit(const Quaternion& q) {
@@ -67,10 +83,7 @@ class Fit {
  private:
   template <class Items>
   bool all(const Items& items) const {
-    for (const auto& item : items) {
-      if (!one(item)) return false;
-    }
-    return true;
+    return std::all_of(items.begin(), items.end(), [this](const auto& item) { return one(item); });
   }
   template <class Contacts>
   static bool sorted(const Contacts& contacts) {

@@ -36,7 +36,6 @@ std::string joined_or_none(const Texts& texts) {
   return texts.empty() ? "none" : joined(texts);
 }
 
-/// Names of items that have a name each.
 template <typename Items>
 std::vector<std::string> names_of(const Items& items) {
   std::vector<std::string> names;

@@ -36,7 +36,6 @@ std::size_t drop_placeholders(HandJoints& hand, bool wrist_is_origin = false);
 /// Drops joints that make a bone impossibly long, at most a third of those known. Returns how many.
 std::size_t drop_stray_joints(HandJoints& hand);
 
-/// Number of joints that a hand has.
 std::size_t known_joints(const HandJoints& hand);
 
 /// True if all coordinates of the known joints are finite.
@@ -103,7 +102,6 @@ class StampSteps {
         false;  ///< the stream's first frame alone was of another clock; nothing is corrected
   };
 
-  /// A frame's stamp, and its time of receipt if known.
   Verdict take(Nanoseconds stamp, const std::optional<Nanoseconds>& receipt);
 
   /// Correction of the stamps, 0 before the first step. Streams of one clock share it.
