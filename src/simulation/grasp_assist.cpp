@@ -29,7 +29,7 @@ constexpr double kReleaseClearance = 0.0008;
 /// or to -kPadDepth, once it has opened by this fraction of the distance to touch_aperture, and by this [m].
 constexpr double kReleaseFraction = 0.9, kMinRelease = 0.015;
 /// Fingers that have opened by this fraction of that distance do not carry the body.
-constexpr double kOpensFraction = 0.5;
+constexpr double kOpeningFraction = 0.5;
 /// Once the hand has opened by this, a grip that has lost a side does not become active, and one that has
 /// lost both is not [m].
 constexpr double kMinOpening = 0.0015;
@@ -41,9 +41,9 @@ constexpr double kMaxLoss = 1.05, kReturnDistance = 0.03, kReturnAngle = 0.5;
 /// Stiffness of a grip over that of a contact: several fingers, on two sides.
 constexpr double kStiffnessRatio = 5.0;
 /// Distance from the springs to their centre [m].
-constexpr double kReach = 0.04;
-/// Time constant at which a grip's springs yield to the contacts [s].
-constexpr double kYieldTime = 0.1;
+constexpr double kSpringDistance = 0.04;
+/// Time constant at which a grip's springs comply with the contacts [s].
+constexpr double kComplianceTime = 0.1;
 /// Bond of a hand of unlimited strength [N].
 constexpr double kUnlimitedBond = 1e5;
 
@@ -75,14 +75,14 @@ bool opens_faster_than(double speed, const HandTrack& track, double seconds, con
 
 /// True if the hand, at this fraction of the frame, has opened beyond the tracker's noise: of an active grip,
 /// beyond where both sides just touch the body.
-bool has_opened(const HandTrack& track, double fraction, const Grip& grip) {
+bool is_open_at(double fraction, const HandTrack& track, const Grip& grip) {
   const double before = aperture(grip, track.previous);
   const double now = before + fraction * (aperture(grip, track.current) - before);
   if (now - std::min(grip.min_aperture, before) - noise_margin(track) <= kMinOpening) return false;
   return !grip.active || now > grip.touch_aperture + kReleaseClearance;
 }
 
-bool still_closes(const HandTrack& track, const Grip& grip) {
+bool is_closing(const HandTrack& track, const Grip& grip) {
   for (int finger = 0; finger < kFingers; ++finger)
     if (grip.takes_part(finger) && ClosingHand::closes(track, grip.by_palm, finger)) return true;
   return false;
@@ -100,11 +100,6 @@ Pose grip_pose(const Grip& grip) {
   const auto fit = registered(grip.in_body.data(), grip.in_hand.data(), kGripPoints);
   if (!fit) return grip.in_palm;
   return grip.in_palm * Pose{fit->to - fit->rotation * fit->from, Quaternion(fit->rotation)};
-}
-
-/// True if a hand that is seen again elsewhere may yet return to the body.
-bool may_return(const HandTrack& track, const Grip& grip) {
-  return to_seconds(track.last_seen - *grip.lost) <= kMaxLoss;
 }
 
 }  // namespace
@@ -141,7 +136,7 @@ void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, Simu
   seconds_ = seconds;
   closing_.clear();
   if (!objects_.any_graspable()) return state.grips.clear();
-  const auto is_over = [&](Grip& grip) { return ends(state, grip); };
+  const auto is_over = [&](Grip& grip) { return has_ended(state, grip); };
   state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), is_over), state.grips.end());
   for (Grip& grip : state.grips)
     if (!grip.lost) follow(state, grip);
@@ -204,23 +199,24 @@ bool GraspAssist::resumes(const SimulationState& state, Grip& grip) const {
 
 /// True if the grip is over. A hand that releases a body that it supported is still inside it: it touches it
 /// lightly until it has left the body, or closes on it again.
-bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
+bool GraspAssist::has_ended(const SimulationState& state, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
-  if (grip.lost) return track.active && !resumes(state, grip) && !may_return(track, grip);
+  if (grip.lost)  // a hand that is seen again elsewhere may yet return to the body
+    return track.active && !resumes(state, grip) && to_seconds(track.last_seen - *grip.lost) > kMaxLoss;
   const GraspMode mode = objects_.mode_of(grip.body);
   if (!track.active || mode == GraspMode::free) return true;
   if (track.appeared) {  // it jumped away, which is as good as a loss
     lose(track.last_seen, grip_pose(grip), grip);
     return grip.released;
   }
-  const TouchingSides touching = objects_.touching_sides(grip, state.contacts);
+  const TouchingGroups touching = objects_.touching_groups(grip, state.contacts);
   if (mode == GraspMode::never) {
     grip.released = true;
     grip.active = false;
     return touching.none();
   }
-  if (grip.released) return touching.none() || still_closes(track, grip);
-  if (seconds_ <= 0.0 || !opens(state, touching, grip)) return false;
+  if (grip.released) return touching.none() || is_closing(track, grip);
+  if (seconds_ <= 0.0 || !has_opened(state, touching, grip)) return false;
   // The links of a linkage follow the fingers as they open, like tongs: their contacts keep their force.
   grip.released = grip.active && objects_.object_of(grip.body).size() == 1;
   grip.active = false;
@@ -228,7 +224,7 @@ bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
 }
 
 /// True if the hand has opened enough to release the body, or has left it.
-bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const {
+bool GraspAssist::has_opened(const SimulationState& state, const TouchingGroups& touching, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
   grip.opened = opened_by(track, seconds_, grip);
   const bool is_wide = grip.opened > release_opening(grip, kReleaseFraction);
@@ -243,9 +239,10 @@ bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touch
 /// Moves the grip with its fingers, unless they open.
 void GraspAssist::follow(SimulationState& state, Grip& grip) {
   const HandTrack& track = state.hands[grip.hand];
-  grip.closes = still_closes(track, grip);
+  grip.closes = is_closing(track, grip);
   grip.in_palm_before = grip.in_palm;
-  if (grip.opened <= release_opening(grip, kOpensFraction)) grip.in_palm = moved_in_palm(grip, track.current);
+  if (grip.opened <= release_opening(grip, kOpeningFraction))
+    grip.in_palm = moved_in_palm(grip, track.current);
   if (!grip.active) return;
   if (grip.closes && scene_.bodies[grip.body].flies) closing_.push_back({grip.hand, grip.body});
   // A hand that is rendered before a fixture does not collide with what it holds there.
@@ -334,12 +331,12 @@ void GraspAssist::take(bool seen, std::size_t slot, const OpposingContacts& oppo
   const Vector3 centre = 0.5 * (opposing.base + opposing.fingers);
   for (std::size_t i = 0; i < kGripPoints; ++i) {
     const Vector3 corner(i % 2 == 0 ? -1 : 1, i < 2 ? -1 : 1, i == 0 || i == 3 ? 1 : -1);
-    grip.in_hand[i] = from.palm.to_local(centre + kReach / std::sqrt(3.0) * corner);
+    grip.in_hand[i] = from.palm.to_local(centre + kSpringDistance / std::sqrt(3.0) * corner);
   }
   grip.pads = distal_ends(from);
   grip.in_palm_before = moved_in_palm(grip, from);
   grip.in_palm = moved_in_palm(grip, to);
-  place(fraction, fraction, state.hands[slot], grip);
+  place_springs(fraction, fraction, state.hands[slot], grip);
   for (std::size_t i = 0; i < kGripPoints; ++i)
     grip.in_body[i] = state.bodies[b].pose.to_local(grip.point[i]);
   const auto after = [](const Grip& x, const Grip& y) {
@@ -376,8 +373,7 @@ void GraspAssist::set_compliance(const SimulationState& state, double step, Cont
   contact.compliance = kept + step * std::max(0.0, -contact.normal.dot(velocity));
 }
 
-/// Sets position and velocity of the springs' ends on the hand.
-void GraspAssist::place(double fraction, double until, const HandTrack& track, Grip& grip) const {
+void GraspAssist::place_springs(double fraction, double until, const HandTrack& track, Grip& grip) const {
   const Pose from = track.previous.palm * grip.in_palm_before;
   const Pose to = track.current.palm * grip.in_palm;
   for (std::size_t i = 0; i < kGripPoints; ++i) {
@@ -396,8 +392,8 @@ void GraspAssist::place(double fraction, double until, const HandTrack& track, G
 }
 
 /// Leaves to the contacts what they do alone: the springs' mean extension fades in the direction in which
-/// base and fingers press the body, and where it opposes their friction.
-void GraspAssist::yield_to_contacts(double step, const SimulationState& state, Grip& grip) const {
+/// base and fingers load the body, and where it opposes their friction.
+void GraspAssist::comply_with_contacts(double step, const SimulationState& state, Grip& grip) const {
   Vector3 line = Vector3::Zero(), friction = Vector3::Zero();
   for (const Contact& contact : state.contacts) {
     if (!contact.touching() || !objects_.is_in(grip, contact.key.hand, contact.key.body)) continue;
@@ -411,8 +407,9 @@ void GraspAssist::yield_to_contacts(double step, const SimulationState& state, G
     extension += (grip.point[i] - pose * grip.in_body[i]) / kGripPoints;
   Vector3 needless = extension.dot(line) * line;
   needless += std::min((extension - needless).dot(friction), 0.0) * friction;
-  const Vector3 yielded = pose.orientation.conjugate() * (std::min(step / kYieldTime, 1.0) * needless);
-  for (Vector3& end : grip.in_body) end += yielded;
+  const Vector3 compliance =
+      pose.orientation.conjugate() * (std::min(step / kComplianceTime, 1.0) * needless);
+  for (Vector3& end : grip.in_body) end += compliance;
 }
 
 /// Leaves the joints of a linkage to the fingers: the springs resist only the mean motion of the links that
@@ -452,12 +449,11 @@ double GraspAssist::offset(const SimulationState& state, const Grip& grip) const
   return largest;
 }
 
-/// True if another hand has the object between both of its contact groups.
 bool GraspAssist::is_held_elsewhere(const SimulationState& state, const Grip& grip) const {
   return std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& other) {
     return other.hand != grip.hand && !other.released && !other.lost &&
            objects_.same_object(other.body, grip.body) &&
-           objects_.touching_sides(other, state.contacts).both();
+           objects_.touching_groups(other, state.contacts).both();
   });
 }
 
@@ -475,11 +471,11 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
   take_held_objects(true, fraction, state);
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
-    const bool touching = objects_.touching_sides(grip, state.contacts).both();
+    const bool touching = objects_.touching_groups(grip, state.contacts).both();
     const HandTrack& track = state.hands[grip.hand];
     const bool present = !grip.lost && !track.appeared;
     if (!touching && (has_left(state, grip) || is_held_elsewhere(state, grip) ||
-                      (present && has_opened(track, fraction, grip)))) {
+                      (present && is_open_at(fraction, track, grip)))) {
       grip.active = false;
       continue;
     }
@@ -487,9 +483,9 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
                                      !objects_.is_opposed(grip.hand, grip.body, grip.by_palm, state.contacts)
                                : grip.opened <= kMinOpening;
     if (!grip.active && (!lost || grip.released || grip.lost)) continue;
-    place(fraction, until, track, grip);
+    place_springs(fraction, until, track, grip);
     leave_joints_free(step, state, grip);
-    if (grip.active) yield_to_contacts(step, state, grip);
+    if (grip.active) comply_with_contacts(step, state, grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;
     if (opens_faster_than(kMaxActivationSpeed, track, seconds_, grip)) continue;
     grip.active = true;
