@@ -173,7 +173,8 @@ int main(int argc, char** argv) {
       return mrhi::write_recording({arguments.begin() + 1, arguments.end()});
     });
   }
-  return mrhi::run_node(argc, argv, "synthetic_hand_node", [](const auto& node, const auto& private_node) {
+  const auto body = [](const auto& node, const auto& private_node) {
     mrhi::SyntheticHandPublisher(node, mrhi::Parameters(private_node)).run();
-  });
+  };
+  return mrhi::run_node(argc, argv, "synthetic_hand_node", mrhi::kUsage, body);
 }

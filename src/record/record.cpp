@@ -198,10 +198,6 @@ SetParameters values_in(const YAML::Node& node) {
   return set;
 }
 
-std::string text_of(const fs::path& file) {
-  return file_text(file.string(), kMaxFileBytes).value_or("");
-}
-
 /// A recorded name as a relative path, which leads to no folder above.
 fs::path path_below(const std::string& name) {
   fs::path path;
@@ -326,9 +322,8 @@ World world_of_file(const std::string& urdf_file, const Scene& scene, const Conf
   World world;
   world.version = MR_HAND_INTERACTION_VERSION;
   world.scene = fs::path(urdf_file).stem().string();
-  world.files.push_back({kUrdf, text_of(urdf_file)});
-  const fs::path yaml = fs::path(urdf_file).replace_extension(".yaml");
-  if (fs::exists(yaml)) world.files.push_back({kYaml, text_of(yaml)});
+  const std::string yaml = fs::path(urdf_file).replace_extension(".yaml").string();
+  world.files = contents_of({{kUrdf, urdf_file}, {kYaml, yaml}});
   add_files(contents_of(scene.mesh_files), world);
   world.parameters = parameter_texts(configuration);
   return world;
@@ -409,19 +404,16 @@ Scene scene_of(const World& world, SceneOptions options, const std::string& fold
   options.mesh_files = written_to(folder, world.files);
   Scene scene = scene_of_files(world, options, folder);
   for (const auto& [name, twist] : world.twists) free_body(scene, name).start_twist = twist;
-  // A removed body that is not in the scene was added by a request.
-  std::vector<std::string> gone_since;
-  for (const std::string& name : world.removed) {
-    if (const std::optional<int> body = find_body(scene, name)) {
-      remove_body(*body, scene);
-    } else {
-      gone_since.push_back(name);
-    }
-  }
+  const auto remove = [&scene](const std::string& name) {
+    const std::optional<int> body = find_body(scene, name);
+    if (body) remove_body(*body, scene);
+    return body.has_value();
+  };
+  std::vector<std::string> of_requests;  // removed bodies that requests had added
+  for (const std::string& name : world.removed)
+    if (!remove(name)) of_requests.push_back(name);
   for (const Added& added : world.added) append(requested_scene(added.request, options), scene);
-  for (const std::string& name : gone_since) {
-    if (const std::optional<int> body = find_body(scene, name)) remove_body(*body, scene);
-  }
+  for (const std::string& name : of_requests) remove(name);
   for (const auto& [name, mode] : world.grasps) {
     if (const std::optional<int> body = find_body(scene, name))
       scene.bodies[*body].grasp = grasp_mode(mode).value_or(GraspMode::parameter);

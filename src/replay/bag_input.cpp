@@ -229,8 +229,9 @@ class BagInput : public FrameSource {
 
  private:
   SourceFrame read_tracker(const rosbag::MessageInstance& message) {
-    auto arrived = TrackerReader::message_of(stands_for(message.getTopic()), message.getCallerId(), message,
-                                             message.getTime());
+    TrackerReader::Message arrived{stands_for(message.getTopic()), message.getCallerId(),
+                                   message.getDataType(),          message.getMD5Sum(),
+                                   serialised_bytes(message),      from_ros_time(message.getTime())};
     return reader_.read(std::move(arrived), [&](const std::string& frame_id, Nanoseconds stamp) {
       return devices_.pose(frame_id, stamp, message.getTime());
     });

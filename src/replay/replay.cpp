@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cinttypes>
-#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 
@@ -235,9 +234,7 @@ class LogRun {
 
   void change(const LogEntry& entry) {
     Change change = change_from_yaml(entry.text, entry.files);
-    char time[32];
-    std::snprintf(time, sizeof time, "%.3f s: ", run_.seconds());
-    live().changes.push_back(time + text::one_line(to_text(change), 200));
+    live().changes.push_back(text::format("%.3f s: ", run_.seconds()) + text::one_line(to_text(change), 200));
     if (auto* set = std::get_if<SetParameters>(&change)) drop_overridden(*set);
     try {
       SceneOptions options = scene_options(simulation().configuration());
@@ -259,9 +256,8 @@ class LogRun {
 
   void compare(const LogEntry& entry) {
     const std::uint64_t here = hash(simulation().state());
-    char text[20];
-    std::snprintf(text, sizeof text, "%016" PRIx64, here);
-    hashes_->row(std::to_string(entry.sequence), std::to_string(entry.stamp), text);
+    hashes_->row(std::to_string(entry.sequence), std::to_string(entry.stamp),
+                 text::format("%016" PRIx64, here));
     if (broken_ || !overrides_.differing().empty()) return;
     ++live().compared;
     if (here == entry.state_hash) ++live().same;
@@ -302,17 +298,6 @@ void place(Scene& scene, const std::string& name, const Pose& pose) {
   }
   body.start = pose;
 }
-
-/// Predicts the next stamp by the recorder's clock, as the node does for live frames.
-struct RecordersClock {
-  Nanoseconds last_stamp = 0;
-  std::optional<Nanoseconds> arrival;  // of the last frame
-
-  std::optional<Nanoseconds> expected(const std::optional<Nanoseconds>& now) const {
-    if (!arrival || !now) return std::nullopt;
-    return last_stamp + std::max<Nanoseconds>(0, *now - *arrival);
-  }
-};
 
 /// Of a file that ends in .bag or .csv.
 bool is_csv(const std::string& file) {
@@ -368,7 +353,7 @@ Simulation prepare_simulation(const ReplayArguments& arguments) {
 }
 
 void run_frames(FrameSource& source, Simulation& simulation, ReplayRun& run) {
-  RecordersClock clock;
+  std::optional<Nanoseconds> arrival;  // of the last frame, by the recorder's clock
   while (const std::optional<SourceFrame> input = source.next()) {
     run.progress.show(source.position(), source.size());
     for (const auto& [kind, what] : input->corrected) run.correct(kind, what);
@@ -377,12 +362,15 @@ void run_frames(FrameSource& source, Simulation& simulation, ReplayRun& run) {
       continue;
     }
     const std::string which = "frame " + std::to_string(source.position()) + " of the input";
-    if (!run.frame(*input->frame, clock.expected(input->arrival), which, simulation)) continue;
+    std::optional<Nanoseconds> expected;  // stamp, as the node predicts it for live frames
+    if (arrival && input->arrival)
+      expected = simulation.result().stamp + std::max<Nanoseconds>(0, *input->arrival - *arrival);
+    if (!run.frame(*input->frame, expected, which, simulation)) continue;
     if (!input->left_out.empty() && run.summary.hands_left_out == 0)
       run.progress.line("replay: left out: " + input->left_out.front() +
                         " (more of the kind are counted only)");
     run.summary.hands_left_out += input->left_out.size();
-    clock = {simulation.result().stamp, input->arrival};
+    arrival = input->arrival;
   }
 }
 

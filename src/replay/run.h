@@ -113,6 +113,7 @@ class ReplayRun {
 
  private:
   void count(const std::vector<Event>& events);
+  void first_of_kind(const std::string& text);
 
   std::string output_;
   std::string made_;  ///< the outermost folder that this run has created; empty: none

@@ -10,7 +10,6 @@
 #include <std_srvs/Trigger.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cinttypes>
 #include <limits>
 #include <stdexcept>
@@ -63,17 +62,12 @@ Tuning::Values values_of(const mr_hand_interaction::SetParameter::Request& reque
 }
 
 /// An object's pose is in tf by its name: a tracker in a frame of that name would move with the object.
-void require_no_frame(const std::string& name, const std::string& fixed_frame) {
+void require_no_frames(const Scene& scene, const std::string& fixed_frame) {
   for (const std::string& frame : {without_slash(fixed_frame), std::string("leap_hands")}) {
-    if (name == frame)
-      throw std::invalid_argument("object '" + name + "': this name is not allowed; allowed: any but '" +
+    if (const auto body = find_body(scene, frame); body && !scene.bodies[*body].fixed)
+      throw std::invalid_argument("object '" + frame + "': this name is not allowed; allowed: any but '" +
                                   frame + "', which is a frame in tf");
   }
-}
-
-void require_no_frames(const Scene& scene, const std::string& fixed_frame) {
-  for (const Body& body : scene.bodies)
-    if (!body.fixed) require_no_frame(body.name, fixed_frame);
 }
 
 Scene scene_of(const ServerParameters& parameters) {
@@ -164,7 +158,7 @@ struct InteractionServer::Impl {
     measured([&] {
       rejection = live_.simulation().begin(frame, expected);
       if (rejection != Rejection::none) return;
-      while (timed_step()) results_.note_step();
+      while (step_times_.measure([&] { return live_.simulation().step(); })) results_.note_step();
     });
     if (rejection != Rejection::none) {
       log_.frame(std::move(frame), frame_id, expected);
@@ -262,14 +256,6 @@ struct InteractionServer::Impl {
     ros::NodeHandle beside = between_frames_.node_beside(node);
     serve<SpawnObject>(beside, "spawn", [this](auto& request) { return spawn(from_message(request)); });
     serve<SpawnUrdf>(beside, "spawn_urdf", [this](auto& request) { return spawn(from_message(request)); });
-  }
-
-  bool timed_step() {
-    const auto begin = std::chrono::steady_clock::now();
-    if (!live_.simulation().step()) return false;
-    const auto time = std::chrono::steady_clock::now() - begin;
-    step_times_.add(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
-    return true;
   }
 
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) {

@@ -119,10 +119,6 @@ void end_in_order() {
 
 int run_node(int argc, char** argv, const char* name, const char* usage, const NodeBody& body) {
   if (const auto status = status_of_arguments(argc, argv, usage)) return *status;
-  return run_node(argc, argv, name, body);
-}
-
-int run_node(int argc, char** argv, const char* name, const NodeBody& body) {
   ros::init(argc, argv, name);
   end_in_order();
   const ros::NodeHandle node, private_node("~");  // outlive what may throw: without a node nothing is logged
@@ -154,17 +150,6 @@ NodeParameters& NodeParameters::required(const std::string& name, const std::str
   entries_.back().allowed = allowed;
   entries_.back().required = &value;
   return *this;
-}
-
-NodeParameters& NodeParameters::texts(const std::string& name, std::size_t min, std::size_t max,
-                                      const std::string& what, std::vector<std::string>& values) {
-  const std::string allowed = "a list of " + std::to_string(min) + " to " + std::to_string(max) + " " + what;
-  return add(name, allowed, [min, max, &values](const std::string& list, const std::string& text) {
-    values.clear();
-    for (const YAML::Node& value : load_yaml("parameter '" + list + "'", text))
-      values.push_back(mrhi::yaml_text(value));
-    return values.size() >= min && values.size() <= max;
-  });
 }
 
 NodeParameters& NodeParameters::number(const std::string& name, double min, double max, double& value,

@@ -21,9 +21,6 @@ using NodeBody = std::function<void(const ros::NodeHandle& node, const ros::Node
 /// been restarted.
 int run_node(int argc, char** argv, const char* name, const char* usage, const NodeBody& body);
 
-/// The same without checking arguments.
-int run_node(int argc, char** argv, const char* name, const NodeBody& body);
-
 /// main() of a node that is an object, made from its handles and its `Parameters` on the parameter server,
 /// which works while ROS spins.
 template <class Node, class Parameters>
@@ -45,9 +42,6 @@ class NodeParameters {
   NodeParameters& text(const std::string& name, std::string& value);
   /// A text that must not be empty.
   NodeParameters& required(const std::string& name, const std::string& allowed, std::string& value);
-  /// A list of `min` to `max` texts; `what` describes them.
-  NodeParameters& texts(const std::string& name, std::size_t min, std::size_t max, const std::string& what,
-                        std::vector<std::string>& values);
   /// A number from `min` to `max`; messages append `more` to the limits.
   NodeParameters& number(const std::string& name, double min, double max, double& value,
                          const std::string& more = "");

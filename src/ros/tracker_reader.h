@@ -182,17 +182,6 @@ class TrackerReader {
     std::vector<std::uint8_t> bytes;
     Nanoseconds receipt = 0;
   };
-  /// From a rosbag::MessageInstance.
-  template <class Serialised>
-  static Message message_of(const std::string& topic, const std::string& publisher, const Serialised& message,
-                            const ros::Time& receipt) {
-    return {topic,
-            publisher,
-            message.getDataType(),
-            message.getMD5Sum(),
-            serialised_bytes(message),
-            static_cast<Nanoseconds>(receipt.toNSec())};
-  }
   /// Pose of a tracker in world, by its frame.
   using Place = std::function<Pose(const std::string& frame_id, Nanoseconds stamp)>;
 
