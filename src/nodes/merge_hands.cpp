@@ -53,7 +53,6 @@ struct Parameters {
 
 }  // namespace
 
-/// Merges the hand_frame topics of several hand_tracking_nodes into one.
 class HandMerging {
  public:
   HandMerging(ros::NodeHandle node, const ros::NodeHandle& private_node, const Parameters& parameters)

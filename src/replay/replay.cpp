@@ -90,16 +90,16 @@ class Overrides {
  private:
   void take_scene(World& world) {
     const std::string file = scene_file(arguments_);
-    World given = world_of_file(file, load_scene(file, scene_options({})), Configuration());
+    World requested = world_of_file(file, load_scene(file, scene_options({})), Configuration());
     const auto same = [](const RecordedFile& a, const RecordedFile& b) {
       return a.name == b.name && a.bytes() == b.bytes();
     };
-    if (given.files.size() <= world.files.size() &&
-        std::equal(given.files.begin(), given.files.end(), world.files.begin(), same))
+    if (requested.files.size() <= world.files.size() &&
+        std::equal(requested.files.begin(), requested.files.end(), world.files.begin(), same))
       return;
-    given.parameters = world.parameters;
-    given.version = world.version;
-    world = given;
+    requested.parameters = world.parameters;
+    requested.version = world.version;
+    world = requested;
     other_scene_ = true;
     differing_.push_back("--scene " + arguments_.scene);
   }
@@ -241,7 +241,7 @@ class LogRun {
       options.mesh_files = written_to(files_folder(), entry.files);
       prepare(change, options);
       run_.events(events_ended_by(change, *simulation_), simulation());
-      make(change, *simulation_);
+      apply_change(change, *simulation_);
     } catch (const std::exception& error) {
       run_.reject("change", error.what());
     }
@@ -314,8 +314,7 @@ ReplayInput open_input(const ReplayArguments& arguments) {
   return open_bag(arguments.input, arguments.topic, arguments.hand_transform, arguments.hands);
 }
 
-/// The log of the live simulation. It is not read if the arguments ask for other hands than the simulation
-/// took.
+/// The log, unless the arguments ask for other hands than the live simulation took.
 OpenLog open_log_of(const ReplayArguments& arguments) {
   OpenLog log;
   log.why_not = "it has hands alone";
@@ -378,7 +377,7 @@ void replay(const ReplayArguments& arguments) {
   const OpenLog log = open_log_of(arguments);
   if (log.source) return replay_log(arguments, *log.source, log.topic);
   if (arguments.scene.empty())
-    throw UsageError("--scene is missing: " + arguments.input + " does not tell it, as " + log.why_not +
+    throw UsageError("--scene is missing: " + arguments.input + " does not have it, as " + log.why_not +
                      "; --help shows the usage");
   Simulation simulation = prepare_simulation(arguments);
   const ReplayInput input = open_input(arguments);

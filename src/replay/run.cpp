@@ -81,7 +81,7 @@ std::map<std::string, std::string> changed_parameters(const Configuration& confi
 }
 
 ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic)
-    : output_(arguments.output), made_(first_missing(arguments.output)) {
+    : output_(arguments.output), created_folder_(first_missing(arguments.output)) {
   summary.input = arguments.input;
   summary.topic = topic;
   summary.arguments = arguments.repeatable;
@@ -121,7 +121,7 @@ bool ReplayRun::frame(const HandFrame& hands, const std::optional<Nanoseconds>& 
 void ReplayRun::result(const Simulation& simulation) {
   const FrameResult& result = simulation.result();
   writer_->write(result, simulation.state(), gravity_of(simulation));
-  if (markers_) markers_->watch(simulation);
+  if (markers_) markers_(simulation);
   summary.deepest_rendered = std::max(summary.deepest_rendered, simulation.deepest_rendered());
   count(result.events);
   if (result.restarted) ++summary.restarts;
@@ -171,10 +171,10 @@ void ReplayRun::check_end() {
 }
 
 void ReplayRun::end(const Simulation& simulation, const std::string& error) {
-  if (!error.empty() && summary.frames == 0 && !made_.empty()) {
+  if (!error.empty() && summary.frames == 0 && !created_folder_.empty()) {
     writer_.reset();
     std::error_code ignored;
-    std::filesystem::remove_all(made_, ignored);
+    std::filesystem::remove_all(created_folder_, ignored);
     return;
   }
   const Scene& scene = simulation.scene();

@@ -77,8 +77,7 @@ std::string schema_json();
 /// Name of an event as in InteractionEvent.msg, e.g. GRASP_BEGIN.
 const char* event_name(EventKind kind);
 
-/// Writes the tables of a replay, a frame at a time; tables.txt has their columns. joints.csv is written only
-/// if the scene has joints.
+/// Writes the tables of tables.txt, a frame at a time; joints.csv only if the scene has joints.
 class ResultWriter {
  public:
   /// Creates the folder if it is missing. Throws std::runtime_error that names a file that cannot be written.
