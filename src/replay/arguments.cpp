@@ -12,7 +12,7 @@
 namespace mrhi {
 namespace {
 
-constexpr double kShortestQuaternion = 1e-6;
+constexpr double kMinQuaternionNorm = 1e-6;
 constexpr const char* kCompareUsage =
     "--compare takes the folders of two runs, then --tolerance METRES,RADIANS or nothing";
 
@@ -20,7 +20,7 @@ Pose pose(const OptionValue& given, std::size_t first) {
   const std::vector<double> v = given.numbers(first, 7);
   Quaternion orientation(v[6], v[3], v[4], v[5]);
   const double length = orientation.norm();
-  if (!std::isfinite(length) || length < kShortestQuaternion) given.fail("the quaternion has no direction");
+  if (!std::isfinite(length) || length < kMinQuaternionNorm) given.fail("the quaternion has no direction");
   orientation.coeffs() /= length;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!body_limits::kPlace.contains(v[i]))
