@@ -70,7 +70,12 @@ void ImplicitModel::solve_islands(ContactStep& step) {
 /// Returns true if any force acts. Newton's method takes one body alone: where contacts between free bodies
 /// opened and slipped, it did not converge in two steps of three.
 bool ImplicitModel::solve(ContactStep& step, const Island& island) {
-  if (island.bodies.size() > 1) return solve_several(step, island);
+  if (island.bodies.size() > 1) {
+    several_.begin(step, island, last_forces_);
+    several_.solve(step);
+    if (several_.acts()) several_.finish(step, island);
+    return several_.acts();
+  }
   problem_.begin(step, island);
   bool agree = problem_.solve();
   // The operator receives the contacts' forces, so the momenta must follow from these.
@@ -79,29 +84,13 @@ bool ImplicitModel::solve(ContactStep& step, const Island& island) {
     problem_.evaluate(true);  // at the final velocity
     agree = true;
   }
-  const bool acts = problem_.scale() > 0.0;
-  if (acts) problem_.finish(agree, step, island);
-  return acts;
-}
-
-bool ImplicitModel::solve_several(ContactStep& step, const Island& island) {
-  several_.begin(step, island, last_forces_);
-  several_.solve(step);
-  const bool acts = several_.acts();
-  if (acts) several_.finish(step, island);
-  return acts;
+  if (problem_.scale() <= 0.0) return false;
+  problem_.finish(agree, step, island);
+  return true;
 }
 
 /// The default stiffness is stable at any step and mass.
 extern const ContactModelEntry implicit_model{"implicit", 0, 2000.0, make_model<ImplicitModel>, true};
-
-namespace {
-
-bool has(const Island& island, int body) {
-  return island.place_of(body) >= 0;
-}
-
-}  // namespace
 
 JointedModel::JointedModel(const Configuration& configuration, const Scene& scene, SimulationState& state,
                            std::vector<Event>& events)
@@ -152,7 +141,7 @@ void JointedModel::place(const ContactStep& step, std::size_t index) {
 // flight's order, and free motion is not damped by a backward Euler step.
 void JointedModel::respond(ContactStep& step, const Island& island) {
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
-    if (!has(island, groups_[i].front())) continue;
+    if (!island.contains(groups_[i].front())) continue;
     awake_[i] = 1;
     place(step, i);
   }
@@ -167,7 +156,7 @@ void JointedModel::respond(ContactStep& step, const Island& island) {
   }
   problem_.finish(agree, step, island, state_.joints);
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
-    if (has(island, groups_[i].front())) solved_[i] = 1;
+    if (island.contains(groups_[i].front())) solved_[i] = 1;
   }
 }
 

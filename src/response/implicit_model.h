@@ -32,7 +32,6 @@ class ImplicitModel : public ContactModel {
 
  private:
   bool solve(ContactStep& step, const Island& island);
-  bool solve_several(ContactStep& step, const Island& island);
 
   GaussSeidelSolver several_;
   std::vector<Vector3> last_forces_;  // of contacts between bodies, then with hands [N]

@@ -83,7 +83,7 @@ IslandProblem::Effort IslandProblem::effort_in_joints() const {
 void IslandProblem::number_unknowns(const ContactStep& step, const Island& island,
                                     const std::vector<Linkage>& linkages,
                                     std::vector<LinkageMotion>& motions) {
-  const auto has = [&](const Linkage& linkage) { return island.place_of(linkage.bodies.front().body) >= 0; };
+  const auto has = [&](const Linkage& linkage) { return island.contains(linkage.bodies.front().body); };
   int count = 0;
   for (const Linkage& linkage : linkages) count += has(linkage) ? linkage.unknowns() : 0;
   for (const IslandBody& body : island.bodies) count += step.scene.bodies[body.body].flies ? 6 : 0;
@@ -132,8 +132,8 @@ void IslandProblem::add_linkage(const ContactStep& step, const Island& island, c
     const LinkageBody& link = linkage.bodies[i];
     const Body& body = motion.body(i);
     const auto index = static_cast<std::size_t>(link.body);
-    columns_[island.place_of(index)] = {first, count};
-    motion.add_jacobian(i, jacobian_.block(6 * island.place_of(index), first, 6, count));
+    columns_[island.number_of(index)] = {first, count};
+    motion.add_jacobian(i, jacobian_.block(6 * island.number_of(index), first, 6, count));
     if (link.joint == LinkageBody::kNone) {
       weights_.segment<3>(first).setOnes();
       weights_.segment<3>(first + 3).setConstant(3.0 * body.mass / body.inertia.trace());
@@ -151,7 +151,7 @@ void IslandProblem::add_body_without_joint(const ContactStep& step, const Island
   const Body& body = step.scene.bodies[index];
   const BodyState& state = step.bodies[index];
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
-  const int number = island.place_of(index);
+  const int number = island.number_of(index);
   columns_[number] = {first, 6};
   parts_.push_back({{first, 6}, nullptr, nullptr, number});
   jacobian_.block<6, 6>(6 * number, first).setIdentity();
@@ -198,7 +198,7 @@ void IslandProblem::add_joint_forces() {
       continue;
     }
     for (int i = 0; i < part.motion->size(); ++i) {
-      const int row = 6 * island_->place_of(part.linkage->bodies[i].body);
+      const int row = 6 * island_->number_of(part.linkage->bodies[i].body);
       part.motion->impulses()[i] = {body_impulse_.segment<3>(row), body_impulse_.segment<3>(row + 3)};
     }
     part.motion->push(momenta);
@@ -221,7 +221,7 @@ void IslandProblem::find_body_velocities() {
     }
     part.motion->move(velocity);
     for (int i = 0; i < part.motion->size(); ++i)
-      body_velocity_.segment<6>(6 * island_->place_of(part.linkage->bodies[i].body))
+      body_velocity_.segment<6>(6 * island_->number_of(part.linkage->bodies[i].body))
           << part.motion->at(i).linear,
           part.motion->at(i).angular;
   }

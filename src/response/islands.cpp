@@ -121,15 +121,15 @@ void Islands::gather() {
 void Islands::divide(const Scene& scene, bool by_joints) {
   islands_.clear();
   with_joints_.clear();
-  places_.resize(scene.bodies.size(), -1);
+  numbers_.resize(scene.bodies.size(), -1);
   const Link *link = links_.data(), *const links_end = link + links_.size();
   const IslandBody *body = bodies_.data(), *const bodies_end = body + bodies_.size();
   while (body != bodies_end) {
     const int root = body->root;
-    Island island{{body, body}, {link, link}, places_.data()};
+    Island island{{body, body}, {link, link}, numbers_.data()};
     bool has_joints = false;
     for (; body != bodies_end && body->root == root; ++body) {
-      places_[body->body] = static_cast<int>(body - island.bodies.first);
+      numbers_[body->body] = static_cast<int>(body - island.bodies.first);
       has_joints = has_joints || (by_joints && !scene.bodies[body->body].flies);
     }
     while (link != links_end && link->root == root) ++link;

@@ -32,13 +32,14 @@ struct Span {
 struct Island {
   Span<IslandBody> bodies;  // sorted by index
   Span<Link> links;         // likewise
-  const int* places;        // by index in Scene::bodies; arbitrary for bodies of other islands
+  const int* numbers;       // by index in Scene::bodies; arbitrary for bodies of other islands
 
   /// Returns the number of a body of Scene::bodies in the island; -1 if it belongs to another one.
-  int place_of(std::size_t body) const {
-    const auto place = static_cast<std::size_t>(places[body]);
-    return place < bodies.size() && bodies.first[place].body == body ? places[body] : -1;
+  int number_of(std::size_t body) const {
+    const auto number = static_cast<std::size_t>(numbers[body]);
+    return number < bodies.size() && bodies.first[number].body == body ? numbers[body] : -1;
   }
+  bool contains(std::size_t body) const { return number_of(body) >= 0; }
 };
 
 /// True if any contact or grip acts on the island.
@@ -68,7 +69,7 @@ class Islands {
   std::vector<Link> links_;
   std::vector<Island> islands_, with_joints_;
   std::vector<int> parent_;   // by body
-  std::vector<int> places_;   // by body
+  std::vector<int> numbers_;  // by body: in its island
   std::vector<char> listed_;  // by body: true if it is in bodies_
 };
 

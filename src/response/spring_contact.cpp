@@ -32,12 +32,6 @@ constexpr double kTwistLever = 0.025;
 /// The radius is Hertz's a = sqrt(R d) (collision/god_object.cpp).
 constexpr double kPatchTorque = 2.0 / 3.0;
 
-/// An open contact has no damping. A gap is a spring of depth < 0, which closes by the end of the step if h
-/// u.n < depth. With the dashpot's time in place of h it would act on bodies that only approach.
-double look_ahead(double step, double depth, bool damping) {
-  return depth <= 0.0 ? step : mrhi::look_ahead(step, damping);
-}
-
 /// Smallest part of the pad's stiffness that shear has: at none the anchor would have no place.
 constexpr double kLeastEngaged = 0.02;
 
@@ -126,9 +120,10 @@ Vector3 settle_touch(const ContactStep& step, const SpringContact& solved, const
 
 }  // namespace
 
-// e = max(h, tau): see kRelaxation.
-double look_ahead(double step, bool damping) {
-  return damping ? std::max(step, kRelaxation) : step;
+// e = max(h, tau): see kRelaxation. A gap is a spring of depth < 0, which closes by the end of the step if h
+// u.n < depth. With the dashpot's time in place of h it would act on bodies that only approach.
+double look_ahead(double step, bool damping, bool touches) {
+  return damping && touches ? std::max(step, kRelaxation) : step;
 }
 
 // The share scales the stiffness, so that N = k share d sums to the phalanx's load, and the strength.
@@ -138,15 +133,15 @@ void make_spring(const ContactStep& step, const Contact& contact, SpringContact&
   const ContactConfiguration& configuration = step.configuration;
   const Body& body = step.scene.bodies[contact.key.body];
   const Triple n = triple(contact.normal), point = triple(contact.point);
-  const double now = engaged(contact, step.configuration.hand.pad);
+  const HandStrength& hand = configuration.hand;
+  const double now = engaged(contact, hand.pad);
   Spring& spring = result.spring;
   spring.normal = n;
   spring.stretch = triple(kept_stretch(contact, now) * tangential_reach(contact));  // Eqs. 16 to 18
   spring.depth = contact.pressed();
   spring.twist = contact.twist;
-  spring.ahead = look_ahead(step.step, spring.depth, configuration.damping);
+  spring.ahead = look_ahead(step.step, configuration.damping, spring.depth > 0.0);
   spring.fade = release_fade(configuration.release_fade);
-  const HandStrength& hand = configuration.hand;
   spring.pad = hand.pad;
   spring.half_over_pad = hand.pad > 0.0 ? 0.5 / hand.pad : 0.0;
   spring.stiffness = body.material.stiffness * contact.share;
@@ -173,7 +168,7 @@ void make_spring(const ContactStep& step, const BodyContact& contact, SpringCont
   spring.normal = triple(contact.normal);
   spring.stretch = triple(contact.stretch);
   spring.depth = contact.depth;
-  spring.ahead = look_ahead(step.step, spring.depth, configuration.damping);
+  spring.ahead = look_ahead(step.step, configuration.damping, spring.depth > 0.0);
   spring.fade = release_fade(configuration.release_fade);
   spring.stiffness = spring.shear = configuration.object_stiffness * contact.share;
   spring.friction = friction_of(contact.material, contact.friction);
@@ -280,13 +275,15 @@ double potential(const Spring& spring, const Triple& u, double spin) {
              spring.ahead;
 }
 
-// Without normal and depth the spring acts alike in all directions, and its limit is the bond alone: a
-// Coulomb contact whose limit does not depend on a normal force.
-//
-//     F = k q+ min(1, bond / k|q+|)       q+ = s + tau u, all of u: n = 0 makes P the identity
-//
-// Depth and fade are 0, so N is 0. The four points are corners of a tetrahedron: by forces alone they support
-// torques about any axis.
+namespace {
+
+/// Makes the spring of one point of a grip. Without normal and depth it acts alike in all directions, and its
+/// limit is the bond alone: a Coulomb contact whose limit does not depend on a normal force.
+///
+///     F = k q+ min(1, bond / k|q+|)       q+ = s + tau u, all of u: n = 0 makes P the identity
+///
+/// Depth and fade are 0, so N is 0. The four points are corners of a tetrahedron: by forces alone they
+/// support torques about any axis.
 void make_grip_spring(const ContactStep& step, const Grip& grip, int point, SpringContact& result) {
   const Pose& pose = step.bodies[grip.body].pose;
   const Vector3 on_body = pose * grip.in_body[point];
@@ -299,8 +296,6 @@ void make_grip_spring(const ContactStep& step, const Grip& grip, int point, Spri
   result.arm = triple(on_body - pose.position);
   result.drive = triple(grip.velocity[point]);
 }
-
-namespace {
 
 /// Writes the solution of one grip point back; if it slips, its anchor on the body follows.
 void settle_grip(const ContactStep& step, const SpringContact& solved, int point, Grip& grip) {
@@ -343,7 +338,7 @@ void make_hand_rows(const ContactStep& step, const Island& island, std::vector<S
     ++number;
   }
   for (const Grip& grip : step.grips) {
-    const int body = grip.active ? island.place_of(grip.body) : SpringContact::kNone;
+    const int body = grip.active ? island.number_of(grip.body) : SpringContact::kNone;
     if (body < 0) continue;
     for (int point = 0; point < kGripPoints; ++point, ++row) {
       make_grip_spring(step, grip, point, *row);
@@ -355,8 +350,8 @@ void make_hand_rows(const ContactStep& step, const Island& island, std::vector<S
 
 void make_link_row(const ContactStep& step, const Island& island, const BodyContact& contact,
                    SpringContact& row) {
-  row.a = step.scene.bodies[contact.key.a].fixed ? SpringContact::kNone : island.place_of(contact.key.a);
-  row.b = island.place_of(contact.key.b);
+  row.a = step.scene.bodies[contact.key.a].fixed ? SpringContact::kNone : island.number_of(contact.key.a);
+  row.b = island.number_of(contact.key.b);
   make_spring(step, contact, row);
 }
 
@@ -367,7 +362,7 @@ const SpringContact* settle_hand_rows(ContactStep& step, const Island& island, c
     }
   }
   for (Grip& grip : step.grips) {
-    if (!grip.active || island.place_of(grip.body) < 0) continue;
+    if (!grip.active || !island.contains(grip.body)) continue;
     for (int point = 0; point < kGripPoints; ++point) settle_grip(step, *row++, point, grip);
   }
   return row;
