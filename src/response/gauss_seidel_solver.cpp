@@ -77,7 +77,7 @@ void GaussSeidelSolver::add_body(const Body& body, const BodyState& state, const
 /// Adds the pairs of shapes that had a force in the last step, or that close fast enough for one. Contacts
 /// are sorted, so those of a pair are adjacent.
 void GaussSeidelSolver::add_links(const ContactStep& step, const Island& island) {
-  for (const Link* link = island.links.begin(); link != island.links.end();) {
+  for (const IslandContact* link = island.links.begin(); link != island.links.end();) {
     const BodyContact& first = step.body_contacts[link->index];
     Range range{link->index, link->index};
     bool acted = false;
@@ -233,8 +233,7 @@ double GaussSeidelSolver::max_speed() const {
   return std::sqrt(largest);
 }
 
-// Ends when a sweep changes no velocity by more than kConverged of the contacts' total change, or with the
-// budget. The remaining error is an impulse that both bodies lack, so it changes no momentum; the next step
+// The remaining error is an impulse that both bodies lack, so it changes no momentum; the next step
 // solves for it.
 void GaussSeidelSolver::solve(const ContactStep& step) {
   impulses_before_.resize(points_.size());
@@ -290,13 +289,13 @@ void GaussSeidelSolver::finish(ContactStep& step, const Island& island) {
     }
     const Vector3 linear = patch.axes.transpose() * impulse.head<3>();
     const Vector3 angular = patch.axes.transpose() * impulse.tail<3>();
-    const auto give = [&](int body, double sign, const Vector3& arm) {
+    const auto apply = [&](int body, double sign, const Vector3& arm) {
       BodyState& state = step.bodies[island.bodies.begin()[body].body];
       state.linear_momentum += sign * linear;
       state.angular_momentum += sign * (arm.cross(linear) + angular);
     };
-    give(patch.b, 1.0, patch.arm_b);
-    if (patch.a != static_cast<int>(free_.size())) give(patch.a, -1.0, patch.arm_a);
+    apply(patch.b, 1.0, patch.arm_b);
+    if (patch.a != static_cast<int>(free_.size())) apply(patch.a, -1.0, patch.arm_a);
   }
   const SpringContact* row = settle_hand_rows(step, island, rows_.data());
   for (const std::size_t index : linked_) settle(step, *row++, step.body_contacts[index]);

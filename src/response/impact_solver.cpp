@@ -211,7 +211,7 @@ void ImpactSolver::collect_in_joints(ContactStep& step, const Island& island,
       if (add_in_joints(step.step, point, material)) contact.time_of_impact = points_.back().time;
     }
   }
-  for (const Link& link : island.links) {
+  for (const IslandContact& link : island.links) {
     BodyContact& contact = step.body_contacts[link.index];
     if (contact.struck) continue;
     ImpactPoint point = point_in_joints(contact.normal, contact.first_touch >= 0.0 ? 0.0 : -contact.depth);
@@ -291,7 +291,7 @@ void ImpactSolver::collect(ContactStep& step, const Island& island) {
   }
   const bool large = is_large(island);
   if (large) note_twists(step, island);
-  for (const Link& link : island.links) {
+  for (const IslandContact& link : island.links) {
     BodyContact& contact = step.body_contacts[link.index];
     if (contact.struck || (large && is_slow(step, contact))) continue;
     add(step, contact);
@@ -370,7 +370,7 @@ void ImpactSolver::resolve_simultaneously(ContactStep& step) {
 // step).
 void ImpactSolver::resolve_sequentially(ContactStep& step, const Island& island) {
   points_.clear();
-  for (const Link& link : island.links) {
+  for (const IslandContact& link : island.links) {
     BodyContact& contact = step.body_contacts[link.index];
     const ImpactPoint point = point_of(step, contact);
     const bool keeps_approaching = contact.struck && classify(point.rate()) == Approach::colliding;

@@ -100,7 +100,7 @@ JointedModel::JointedModel(const Configuration& configuration, const Scene& scen
       linkages_(linkages_of(scene)),
       awake_(linkages_.size()),
       solved_(linkages_.size()),
-      usual_step_(configuration.step) {
+      regular_step_(configuration.step) {
   for (const Linkage& linkage : linkages_) {
     groups_.emplace_back();
     for (const LinkageBody& link : linkage.bodies) groups_.back().push_back(link.body);
@@ -145,7 +145,7 @@ void JointedModel::respond(ContactStep& step, const Island& island) {
     awake_[i] = 1;
     place(step, i);
   }
-  problem_.begin(step, island, linkages_, motions_, state_.joints, usual_step_);
+  problem_.begin(step, island, linkages_, motions_, state_.joints, regular_step_);
   impacts_.resolve(step, island, impact_friction(step), problem_, state_.joints);
   if (!problem_.acts()) return;
   bool agree = problem_.solve();
@@ -175,12 +175,12 @@ void JointedModel::fly(const ContactStep& step) {
 
 void JointedModel::note(std::size_t index) {
   const JointChange change = note_place(scene_.joints[index], state_.joints[index]);
-  const auto tell = [&](bool happened, EventKind kind) {
+  const auto report = [&](bool happened, EventKind kind) {
     if (happened) events_.push_back({state_.time, kind, scene_.joints[index].child, 0});
   };
-  tell(change.reached_limit, EventKind::joint_limit);
-  tell(change.entered_detent, EventKind::detent);
-  tell(change.opened_latch, EventKind::latch_open);
+  report(change.reached_limit, EventKind::joint_limit);
+  report(change.entered_detent, EventKind::detent);
+  report(change.opened_latch, EventKind::latch_open);
 }
 
 }  // namespace mrhi

@@ -66,7 +66,7 @@ class JointedModel : public ImplicitModel {
   std::vector<LinkageMotion> motions_;
   std::vector<LinkageFlight> flights_;
   std::vector<char> awake_, solved_;  // by linkage; solved: momenta include gravity
-  const double usual_step_;           // regular step [s]
+  const double regular_step_;         // regular step [s]
   Eigen::VectorXd positions_;
 };
 

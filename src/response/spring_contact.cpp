@@ -33,11 +33,11 @@ constexpr double kTwistLever = 0.025;
 constexpr double kPatchTorque = 2.0 / 3.0;
 
 /// Smallest part of the pad's stiffness that shear has: at none the anchor would have no place.
-constexpr double kLeastEngaged = 0.02;
+constexpr double kMinShearRatio = 0.02;
 
 /// Part of its final stiffness that the pad has at its depth; 0 without a pad.
 double engaged(const Contact& contact, double pad) {
-  return pad > 0.0 ? std::clamp(contact.pressed() / pad, kLeastEngaged, 1.0) : 0.0;
+  return pad > 0.0 ? std::clamp(contact.pressed() / pad, kMinShearRatio, 1.0) : 0.0;
 }
 
 /// Stretch of the anchor that keeps its force as the stiffness changes, over its stretch.
@@ -105,8 +105,8 @@ double kept_twist(const SpringContact& solved, double step) {
 /// The step just solved used the limit L of the previous friction state, mu N or phi N. The new state sets
 /// that of the next step. An open contact, N = 0, does not slide.
 template <typename Touch>
-Vector3 settle_touch(const ContactStep& step, const SpringContact& solved, const Material& material,
-                     Touch& touch, double grip = 1.0) {
+Vector3 settle_contact(const ContactStep& step, const SpringContact& solved, const Material& material,
+                       Touch& touch, double grip = 1.0) {
   const double limit = solved.spring.slip_limit;
   touch.force = vector(solved.response.force);
   touch.friction = solved.response.trial_squared <= limit * limit ? Friction::sticking : Friction::slipping;
@@ -193,14 +193,14 @@ void settle(const ContactStep& step, const SpringContact& solved, Contact& conta
   contact.twist = kept_twist(solved, step.step);
   contact.torque = solved.response.torque;
   const Material& material = step.scene.bodies[contact.key.body].material;
-  const Vector3 slid = settle_touch(step, solved, material, contact, contact.grip);
+  const Vector3 slid = settle_contact(step, solved, material, contact, contact.grip);
   if (slid.isZero(0.0)) return;
   const Pose& pose = step.bodies[contact.key.body].pose;
   contact.god_object = pose.to_local(pose * contact.god_object + slid - contact.lever);
 }
 
 void settle(const ContactStep& step, const SpringContact& solved, BodyContact& contact) {
-  const Vector3 slid = settle_touch(step, solved, contact.material, contact);
+  const Vector3 slid = settle_contact(step, solved, contact.material, contact);
   if (slid.isZero(0.0)) return;
   const Pose& pose = step.bodies[contact.key.b].pose;
   contact.anchor_b = pose.to_local(pose * contact.anchor_b + slid);
@@ -239,7 +239,7 @@ double yielding_depth(const Spring& spring) {
 ///
 /// The kinks are where the finger begins to comply, where the pad ends, at rest, where the fade begins, and
 /// where the force ends: at d+ = 0 or at the release speed, whichever is slower.
-double push_energy(const Spring& spring, double rate) {
+double normal_energy(const Spring& spring, double rate) {
   const auto rate_at = [&](double depth) { return (spring.depth - depth) / spring.ahead; };
   const double end = spring.fade > 0.0 ? std::min(rate_at(0.0), 1.0 / spring.fade) : rate_at(0.0);
   std::array<double, 4> kinks{rate_at(yielding_depth(spring)), rate_at(spring.pad), 0.0, end};
@@ -269,7 +269,7 @@ double potential(const Spring& spring, const Triple& u, double spin) {
   const double rate = u.dot(spring.normal);
   const Triple drawn = spring.stretch + spring.ahead * (u - rate * spring.normal);
   const double turned = std::abs(spring.twist + spring.ahead * spin);
-  return push_energy(spring, rate) +
+  return normal_energy(spring, rate) +
          (yielding_energy(spring.shear, std::sqrt(drawn.dot(drawn)), spring.slip_limit) +
           yielding_energy(spring.twist_stiffness, turned, spring.twist_limit)) /
              spring.ahead;

@@ -60,8 +60,8 @@ struct Spring {
 
   /// Evaluates the spring at the relative velocity `u` of 1 at the contact point and the relative spin about
   /// n. `renew_limits`: first sets Coulomb's limits by the normal force there.
-  [[gnu::always_inline]] inline void respond(const Triple& u, double spin, bool renew_limits,
-                                             SpringResponse& response);
+  [[gnu::always_inline]] inline void evaluate(const Triple& u, double spin, bool renew_limits,
+                                              SpringResponse& response);
 };
 
 /// A row of an island's contact problem: a spring and the points of its two bodies on which it acts.
@@ -146,7 +146,7 @@ inline double Spring::normal_force(double rate, double& slope) const {
   return force;
 }
 
-inline void Spring::respond(const Triple& u, double spin, bool renew_limits, SpringResponse& response) {
+inline void Spring::evaluate(const Triple& u, double spin, bool renew_limits, SpringResponse& response) {
   const double rate = u.dot(normal);
   const double load = response.normal_force = normal_force(rate, response.normal_slope);
   if (renew_limits) {
