@@ -246,24 +246,6 @@ void turn_part(const Body& body, const Vector3& angular_momentum, double step, Q
   turn_on(cosine - cosine * e, axes.to_body(v), q);
 }
 
-/// Rotates the orientation by a step, in parts of equal length.
-///
-///     quickness |L|^2 h^2 <= 1,     quickness = max((1/I_min - 1/I_max) / kMaxPartPath, (1/I_min) /
-///     kMaxTurn)^2
-///
-/// for a step of one part. Squares are compared: a root of |L|^2 would cost more than all else. The form
-/// !(x > y) is also true for NaN.
-void turn(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
-  const double squared = angular_momentum.squaredNorm();
-  if (!(squared > kMinSquaredMomentum)) return;
-  const double limit = std::max(spread(body) / kMaxPartPath, body.inverse_moments.maxCoeff() / kMaxTurn);
-  const double squared_parts = limit * limit * squared * (step * step);
-  if (squared_parts <= 1.0) return turn_part(body, angular_momentum, step, orientation);
-  const double parts = std::sqrt(squared_parts), count = std::min(std::ceil(parts), kMaxParts);
-  for (int i = 0; i < static_cast<int>(count); ++i)
-    turn_part(body, angular_momentum, step / std::max(parts, count), orientation);
-}
-
 // x += h p / m + h^2 g / 2 with p at the start of the step, then p += m h g. If contacts were solved
 // implicitly, the caller passes g = 0: p is then that of the end, and x += h v(h) is backward Euler's.
 void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) {
@@ -274,12 +256,30 @@ void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) 
 
 }  // namespace
 
+// In parts of equal length.
+//
+//     quickness |L|^2 h^2 <= 1,     quickness = max((1/I_min - 1/I_max) / kMaxPartPath, (1/I_min) /
+//     kMaxTurn)^2
+//
+// for a step of one part. Squares are compared: a root of |L|^2 would cost more than all else. The form
+// !(x > y) is also true for NaN.
+void free_rotation(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
+  const double squared = angular_momentum.squaredNorm();
+  if (!(squared > kMinSquaredMomentum)) return;
+  const double limit = std::max(spread(body) / kMaxPartPath, body.inverse_moments.maxCoeff() / kMaxTurn);
+  const double squared_parts = limit * limit * squared * (step * step);
+  if (squared_parts <= 1.0) return turn_part(body, angular_momentum, step, orientation);
+  const double parts = std::sqrt(squared_parts), count = std::min(std::ceil(parts), kMaxParts);
+  for (int i = 0; i < static_cast<int>(count); ++i)
+    turn_part(body, angular_momentum, step / std::max(parts, count), orientation);
+}
+
 // Exact for any step: a parabola, and Euler's equations in closed form. The angular momentum in world axes is
 // unchanged; only the axes rotate.
 void free_flight(const Body& body, const Vector3& gravity, double step, BodyState& state) {
   if (!body.flies) return;
   fly_on(body.mass, gravity, step, state);
-  turn(body, state.angular_momentum, step, state.pose.orientation);
+  free_rotation(body, state.angular_momentum, step, state.pose.orientation);
 }
 
 }  // namespace mrhi

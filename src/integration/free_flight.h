@@ -9,4 +9,7 @@ namespace mrhi {
 /// any step. Jointed bodies are skipped (src/joints).
 void free_flight(const Body& body, const Vector3& gravity, double step, BodyState& state);
 
+/// Rotates a free body's orientation by `step` seconds at a constant angular momentum [kg m^2/s], world axes.
+void free_rotation(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation);
+
 }  // namespace mrhi

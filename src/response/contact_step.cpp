@@ -1,5 +1,7 @@
 #include "contact_step.h"
 
+#include "../integration/free_flight.h"
+
 namespace mrhi {
 
 void StepChanges::reset(std::size_t bodies) {
@@ -14,7 +16,8 @@ StepChanges::Impacted& StepChanges::impacted(int body, const BodyState& after) {
   int& place = places_[body];
   if (place < 0) {
     place = static_cast<int>(impacted_.size());
-    impacted_.push_back({body, {after.linear_momentum, after.angular_momentum}, {}, {}, 0.0, 0.0});
+    impacted_.push_back(
+        {body, {after.linear_momentum, after.angular_momentum}, after.pose.orientation, {}, {}, 0.0, 0.0});
   }
   return impacted_[place];
 }
@@ -56,11 +59,11 @@ double StepChanges::mean_impact_time(std::size_t body) const {
 // It acted for h - t, so x -= sum t J / m, and the rotation likewise. Springs respond to the impact in the
 // same solve. Their impulse, all that is neither J nor gravity, counts from the mean time of the impacts.
 //
-//     x -= (sum t J + T dp) / m,      turn by -I^-1 (sum t r x J + T dL),      T = sum t |J| / sum |J|
-//     dp = p - p_before - sum J - m h g,     dL = L - L_before - sum r x J
+//     x -= (sum t J + T dp) / m,      dp = p - p_before - sum J - m h g,      T = sum t |J| / sum |J|
 //
-// The rotation is removed about the axes, and by I, at the end of the step; the error is of second order in
-// the impact's rotation. Only poses change, so momenta and energy stay.
+// The body rotates by L_before until T, and by L from then on: so its energy is the one after the impact,
+// which was solved by the inertia at T. Impacts at other times turn it by -I^-1 sum (t - T) r x J, to first
+// order.
 void StepChanges::delay_impacts(const std::vector<Body>& scene, const Vector3& gravity, double step,
                                 std::vector<BodyState>& bodies) const {
   for (const Impacted& impacted : impacted_) {
@@ -72,15 +75,15 @@ void StepChanges::delay_impacts(const std::vector<Body>& scene, const Vector3& g
     const Vector3 fallen = (body.mass * step) * gravity;
     const Vector3 linear_by_springs =
         state.linear_momentum - fallen - impacted.before.linear - impacted.sum.linear;
-    const Vector3 angular_by_springs =
-        state.angular_momentum - impacted.before.angular - impacted.sum.angular;
     state.pose.position -= (impacted.moment.linear + time * linear_by_springs) / body.mass;
-    const Vector3 turned = -(world_inverse_inertia(body, state.pose.orientation) *
-                             (impacted.moment.angular + time * angular_by_springs));
+    Quaternion& orientation = state.pose.orientation = impacted.orientation;
+    free_rotation(body, impacted.before.angular, time, orientation);
+    free_rotation(body, state.angular_momentum, step - time, orientation);
+    const Vector3 turned =
+        -(world_inverse_inertia(body, orientation) * (impacted.moment.angular - time * impacted.sum.angular));
     const double angle = turned.norm();
     if (angle > 0.0) {
-      state.pose.orientation =
-          (Quaternion(Eigen::AngleAxisd(angle, turned / angle)) * state.pose.orientation).normalized();
+      orientation = (Quaternion(Eigen::AngleAxisd(angle, turned / angle)) * orientation).normalized();
     }
   }
 }

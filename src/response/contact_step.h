@@ -55,6 +55,7 @@ class StepChanges {
   struct Impacted {
     int body;
     Twist before;              // momenta before the impacts
+    Quaternion orientation;    // at the start of the step
     Twist sum, moment;         // of all impulses [N s], [N m s], and of each times its time
     double size, size_moment;  // sum of magnitudes, and of each times its time
   };

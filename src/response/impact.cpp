@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../integration/free_flight.h"
 #include "../math/rotation.h"
 
 namespace mrhi {
@@ -205,16 +206,16 @@ void ImpactPoint::advance_arms(double seconds, double closed) {
   }
 }
 
-// I^-1 <- R I^-1 R', R by t w. An impulse that conserves energy with the inertia at the start of the step
-// does not at the time of impact: an elongated body that spins gained up to 0.2 % in an elastic impact.
+// An impulse that conserves energy with the inertia at the start of the step does not at the time of impact:
+// a steel rod of 5 by 300 mm that fell at steps of 8 ms came away with three times its energy, as spin about
+// its own axis.
 void ImpactPoint::turn_inertia() {
   const double wait = time - inertia_time;
   inertia_time = time;
   for (Partner* partner : {&a, &b}) {
     if (partner->state == nullptr) continue;
-    const Vector3 turn = wait * (partner->inverse_inertia * partner->state->angular_momentum);
-    const Matrix3 rotation = rotation_by(turn).toRotationMatrix();
-    partner->inverse_inertia = rotation * partner->inverse_inertia * rotation.transpose();
+    free_rotation(*partner->body, partner->state->angular_momentum, wait, partner->orientation);
+    partner->inverse_inertia = world_inverse_inertia(*partner->body, partner->orientation);
   }
 }
 

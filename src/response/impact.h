@@ -67,9 +67,11 @@ struct ImpactPoint {
     BodyState* state = nullptr;
     const JointCoordinates* joints = nullptr;
     double inverse_mass = 0.0;
-    Vector3* recoil = nullptr;  // of the hand's capsule in this impact
-    Matrix3 inverse_inertia;    // world axes
-    Vector3 arm;                // from the centre of mass [m]
+    Vector3* recoil = nullptr;   // of the hand's capsule in this impact
+    Matrix3 inverse_inertia;     // world axes
+    const Body* body = nullptr;  // of a state
+    Quaternion orientation;      // of a state, at `inertia_time`
+    Vector3 arm;                 // from the centre of mass [m]
 
     Vector3 velocity_of_centre() const;
     // Inline for relax(), which is most of an impact's cost. Only a free body has a state: neither a hand nor

@@ -43,7 +43,9 @@ ImpactPoint::Partner partner(ContactStep& step, std::size_t index, const Vector3
   if (body.fixed) return partner;
   partner.state = &step.bodies[index];
   partner.inverse_mass = 1.0 / body.mass;
-  partner.inverse_inertia = world_inverse_inertia(body, partner.state->pose.orientation);
+  partner.body = &body;
+  partner.orientation = partner.state->pose.orientation;
+  partner.inverse_inertia = world_inverse_inertia(body, partner.orientation);
   partner.arm = arm;
   return partner;
 }
