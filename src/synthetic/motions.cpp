@@ -9,8 +9,7 @@
 namespace mrhi {
 namespace {
 
-constexpr double kApproachLength = 0.10;  // straight to the object with the hand open [m]
-constexpr double kAside = 0.16;           // further away, where the hand comes from [m]
+constexpr double kAside = 0.16;  // further away, where the hand comes from [m]
 
 /// Opens the hand around an object at `at`, withdraws it to `off` along `retreat` and on to `aside`.
 void release(Script& script, const GraspPostures& postures, const Pose& at, const Pose& off,

@@ -14,6 +14,8 @@ inline Vector3 scene_object() {
   return {0.0, 0.0, 0.22};
 }
 
+constexpr double kApproachLength = 0.10;  ///< straight to the object with the hand open [m]
+
 /// Hand frame at `wrist`, with x along `fingers` and z as close to `dorsal` as possible.
 Pose hand_pose(const Vector3& wrist, const Vector3& fingers, const Vector3& dorsal);
 
@@ -22,6 +24,13 @@ Quaternion turn(double degrees, const Vector3& axis);
 
 /// Wrist pose that puts the right hand's index tip at `tip`, with the orientation of `direction`.
 Pose wrist_for_index_tip(const Vector3& tip, const Pose& direction, const HandPosture& posture);
+
+/// Adds a keyframe `duration` after the last one, or after 0 [s].
+inline void append(std::vector<Keyframe>& keyframes, double duration, const Pose& wrist,
+                   const HandPosture& posture, const Vector3& velocity = Vector3::Zero()) {
+  const double start = keyframes.empty() ? 0.0 : keyframes.back().time;
+  keyframes.push_back({start + duration, wrist, posture, velocity});
+}
 
 /// Builds a motion keyframe by keyframe.
 class Script {
@@ -36,8 +45,8 @@ class Script {
   /// `duration` after the last keyframe [s].
   Script& then(double duration, const Pose& wrist, const HandPosture& posture,
                const Vector3& velocity = Vector3::Zero()) {
-    const double start = motion_.keyframes.empty() ? 0.0 : motion_.keyframes.back().time;
-    return at(start + duration, wrist, posture, velocity);
+    append(motion_.keyframes, duration, wrist, posture, velocity);
+    return *this;
   }
   Script& hold(double duration) {
     const Keyframe last = motion_.keyframes.back();
@@ -67,6 +76,7 @@ class Script {
 inline Pose shifted(const Pose& pose, const Vector3& by) {
   return {pose.position + by, pose.orientation};
 }
+std::vector<Keyframe> shifted(std::vector<Keyframe> keyframes, const Vector3& by);
 
 struct Reach {
   FingerAngles angles;

@@ -35,6 +35,14 @@ Pose mirrored(const Pose& wrist) {
           Quaternion(q.w(), q.x(), -q.y(), -q.z()) * half_turn};
 }
 
+std::vector<Keyframe> shifted(std::vector<Keyframe> keyframes, const Vector3& by) {
+  for (Keyframe& key : keyframes) {
+    key.wrist.position += by;
+    if (key.centre) *key.centre += by;
+  }
+  return keyframes;
+}
+
 Pose hand_pose(const Vector3& wrist, const Vector3& fingers, const Vector3& dorsal) {
   Matrix3 axes;
   axes.col(0) = fingers.normalized();
