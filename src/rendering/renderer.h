@@ -143,7 +143,7 @@ struct HandFrameView {
 class ClearanceFinder {
  public:
   /// Up to this depth the nearest surface is the one that the hand has entered by [m].
-  static constexpr double kShallow = 0.002;
+  static constexpr double kMaxShallowDepth = 0.002;
 
   /// Keeps references.
   ClearanceFinder(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
@@ -220,19 +220,19 @@ class HandRenderer {
   void look_back();
   void place_before();
   // `reference` is the offset to stay near to; `swing` bounds a fingertip's turn in the frame [m].
-  void push_out(double min_gap);
-  void keep_pace(const HandOffset& reference);
+  void move_outside(double min_gap);
+  void limit_pace(const HandOffset& reference);
   void keep_out(const HandOffset& reference, double swing);
   double settle(const HandOffset& reference, double swing, const Pace* pace = nullptr,
                 double tolerated = kMaxDepth);
-  double begin_anew(const HandOffset& reference);
-  double push_distance() const;
+  double restart(const HandOffset& reference);
+  double body_displacement() const;
   HandOffset staying(const PalmLag& lag);
   Quaternion frame_staying(const Quaternion& whole) const;
   PalmLag lag_staying();
   double limit_displacement(const PalmLag& lag);
   void shift_out();
-  void lead_out();
+  void trace_out();
   double displacement(const HandOffset& from, const HandOffset& to);
   bool left_behind();
 
@@ -252,9 +252,9 @@ class HandRenderer {
   const HandOffset* last_ = nullptr;  // the offset of the frame before
   HandOffset offset_;
   Hand* placed_ = nullptr;
-  Hand before_;          // as it was shown at the frame before
-  bool pushed_ = false;  // bodies are in the way
-  double leap_ = 0.0;    // of a joint beyond the displacement of hand and bodies, if unavoidable [m]
+  Hand before_;              // as it was shown at the frame before
+  bool penetrates_ = false;  // bodies are in the way
+  double leap_ = 0.0;        // of a joint beyond the displacement of hand and bodies, if unavoidable [m]
   double tracked_displacement_ = 0.0;  // of the farthest joint since then [m]
   double elapsed_ = 0.0;               // since then [s]
 };

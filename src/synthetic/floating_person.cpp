@@ -91,6 +91,12 @@ Pose FloatingPerson::frame(double time, Frame of) const {
   return body * link_in_body_;
 }
 
+/// Pose of the body at `time` by what was seen a reaction time ago, if nothing holds it.
+Pose FloatingPerson::expected_body(double time) const {
+  const Moment& seen = past_.front();
+  return expected(seen.sight.body, seen.sight.body_twist, time - seen.time);
+}
+
 /// Critically damped, so that a drift leaves no error.
 void FloatingPerson::correct(double since) {
   const Moment& seen = past_.front();
@@ -117,9 +123,7 @@ void FloatingPerson::lose(double time) {
 
 /// From what is seen. Hands stay where they are.
 void FloatingPerson::set_path(double time, double duration, const Twist& travel, const Twist& ends) {
-  const Moment& seen = past_.front();
-  const Twist& twist = seen.sight.body_twist;
-  path_ = {time, duration, expected(seen.sight.body, twist, time - seen.time), twist, travel, ends};
+  path_ = {time, duration, expected_body(time), past_.front().sight.body_twist, travel, ends};
   deviation_ = deviation_rate_ = Twist();
   for (std::size_t hand = 0; hand < kHands; ++hand)
     if (arms_[hand].frame != Frame::body) begin(time, hand, arms_[hand].frame);
@@ -170,12 +174,12 @@ void FloatingPerson::decide(double time) {
 
 /// Returns whether the body rests.
 bool FloatingPerson::come_to_rest(double time, const std::optional<Vector3>& place) {
-  const Moment& seen = past_.front();
-  const Twist& twist = seen.sight.body_twist;
-  const Vector3 at = expected(seen.sight.body, twist, time - seen.time).position;
+  const Sight& sight = past_.front().sight;
+  const Twist& twist = sight.body_twist;
+  const Vector3 at = expected_body(time).position;
   const bool still = twist.linear.norm() < kRestSpeed && twist.angular.norm() < kRestSpin;
   const Vector3 off = place ? Vector3(*place - at) : Vector3::Zero();
-  const Vector3 reached = at + seen.sight.body.orientation * link_in_body_.position;
+  const Vector3 reached = at + sight.body.orientation * link_in_body_.position;
   const Rail& rail = nearest_rail(reached);
   const Vector3& axis = rail.axis;
   const double along = axis.dot(off), speed = twist.linear.norm();
@@ -221,8 +225,7 @@ void FloatingPerson::glide_along(double time, const Vector3& at, const Vector3& 
 
 /// Hands that hold a rail take the body along a path from its present motion, upright in the end.
 void FloatingPerson::follow(double time, const Vector3& to, const Vector3& velocity, double duration) {
-  const Moment& seen = past_.front();
-  const Pose from = expected(seen.sight.body, seen.sight.body_twist, time - seen.time);
+  const Pose from = expected_body(time);
   set_path(time, duration, {to - from.position, rotation_vector(from.orientation.conjugate())},
            {velocity, Vector3::Zero()});
   busy_until_ = time + duration;
@@ -241,9 +244,8 @@ const Rail& FloatingPerson::nearest_rail(const Vector3& to) const {
 }
 
 void FloatingPerson::take_rail(double time, std::size_t first, std::size_t last, const Vector3& ahead) {
-  const Moment& seen = past_.front();
   if (first == kLeft && last == kRight) drift(time);
-  const Pose body = expected(seen.sight.body, seen.sight.body_twist, time + take_time() - seen.time);
+  const Pose body = expected_body(time + take_time());
   for (std::size_t hand = first; hand <= last; ++hand) {
     const Vector3 at =
         body.position + ahead +
@@ -266,7 +268,7 @@ void FloatingPerson::begin(double time, std::size_t hand, Frame of) {
 
 /// The hand retreats from what it takes, opens, comes straight from kApproachDistance away, and closes.
 /// `hold` is in world.
-void FloatingPerson::take(double time, std::size_t hand, Hold hold) {
+void FloatingPerson::take(double time, std::size_t hand, Handhold hold) {
   hold.wrist.position += random_.gaussian_vector(skill_.placing_error);
   begin(time, hand, Frame::path);
   Arm& arm = arms_[hand];
@@ -330,7 +332,7 @@ void FloatingPerson::bring(double time, const FloatingGoal& goal) {
   if (away.norm() > kArmLength || sight.twist.linear.norm() > kMaxObjectSpeed) return rest_hands(time);
   drift(time);
   for (const auto& [side, in_body] : holds_) {
-    Hold hold = in_body;
+    Handhold hold = in_body;
     const Pose object = expected(sight.object, sight.twist, time + take_time() - past_.front().time);
     hold.wrist = object * hold.wrist;
     hold.retreat = object.orientation * hold.retreat;

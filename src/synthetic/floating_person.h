@@ -73,7 +73,7 @@ class FloatingPerson : public Person {
   void work(double time, const FloatingGoal& goal);
 
   void take_rail(double time, std::size_t first, std::size_t last, const Vector3& ahead);
-  void take(double time, std::size_t hand, Hold hold);
+  void take(double time, std::size_t hand, Handhold hold);
   void release(double delay);
   void rest_hands(double time);
   void correct(double since);
@@ -86,6 +86,7 @@ class FloatingPerson : public Person {
   static std::size_t arm_of(Side side) { return side == Side::left ? kLeft : kRight; }
   const Rail& nearest_rail(const Vector3& to) const;
   Pose frame(double time, Frame frame) const;
+  Pose expected_body(double time) const;
   Pose rest_pose(std::size_t hand) const;
   double take_time() const;
 
@@ -95,8 +96,8 @@ class FloatingPerson : public Person {
   Matrix3 inertia_;  ///< of it, body axes
   std::vector<Rail> rails_;
   Body object_;
-  std::vector<std::pair<Side, Hold>> holds_;  ///< of the object, in its frame
-  Tremor right_tremor_;                       ///< Person's is of the left hand
+  std::vector<std::pair<Side, Handhold>> holds_;  ///< of the object, in its frame
+  Tremor right_tremor_;                           ///< Person's is of the left hand
 
   std::array<Arm, kHands> arms_;
   std::array<HandPlace, kHands> shown_;

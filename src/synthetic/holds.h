@@ -9,7 +9,7 @@
 namespace mrhi {
 
 /// A hand on something, in a frame of its owner's.
-struct Hold {
+struct Handhold {
   Pose wrist;
   HandPosture open, near, closed;  ///< near: just off the surface
   Vector3 retreat;                 ///< unit: direction in which the open hand leaves
@@ -23,7 +23,7 @@ struct Rail {
   double distance(const Vector3& from) const;
   /// Power grip at the place nearest to `at`, of a person with this orientation: the palm towards the rail,
   /// the thumb up or to the other hand. In world.
-  Hold hold(Side side, const Vector3& at, const Quaternion& person) const;
+  Handhold hold(Side side, const Vector3& at, const Quaternion& person) const;
 };
 
 /// The rails among the scene's fixtures. Throws std::invalid_argument if there is none.
@@ -31,6 +31,6 @@ std::vector<Rail> rails_of(const Scene& scene);
 
 /// Holds of an object that is to go to `place`, in its frame: by two upright bars with both hands, or with
 /// the right hand by grasp_of(), and throws as that does.
-std::vector<std::pair<Side, Hold>> holds_of(const Body& object, const Vector3& place);
+std::vector<std::pair<Side, Handhold>> holds_of(const Body& object, const Vector3& place);
 
 }  // namespace mrhi

@@ -38,14 +38,9 @@ OperatorSkill skill_of(double Figure::*group) {
   return skill;
 }
 
-constexpr double kMaxTargetSpeed = 0.05;   // faster objects are not pursued [m/s]
-constexpr double kPreparationTime = 0.9;   // at pace 1, before a motion [s]
-constexpr double kWaitingDistance = 0.35;  // distance of the waiting hand behind its target [m]
-
-HandPlace waiting(const Vector3& object) {
-  return {hand_pose(object + Vector3(0.05, -kWaitingDistance, 0.05), Vector3::UnitY(), Vector3::UnitZ()),
-          relaxed_posture()};
-}
+constexpr double kMaxTargetSpeed = 0.05;          // faster objects are not pursued [m/s]
+constexpr double kPreparationTime = 0.9;          // at pace 1, before a motion [s]
+const Vector3 kWaitingOffset(0.05, -0.35, 0.05);  // of the waiting hand from its target [m]
 
 double half_height(const Body& body) {
   const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
@@ -170,7 +165,11 @@ bool Person::remember(const Moment& now) {
 
 PractisedPerson::PractisedPerson(const OperatorSkill& skill, std::vector<std::optional<PractisedGoal>> goals,
                                  const Body& object, std::uint64_t seed)
-    : Person(skill, seed), goals_(std::move(goals)), object_(object), now_(waiting(scene_object())) {}
+    : Person(skill, seed),
+      goals_(std::move(goals)),
+      object_(object),
+      now_{hand_pose(scene_object() + kWaitingOffset, Vector3::UnitY(), Vector3::UnitZ()),
+           relaxed_posture()} {}
 
 HandPlace PractisedPerson::move(double time, const Sight& sight) {
   const bool busy = !keyframes_.empty() && time < began_ + keyframes_.back().time;
