@@ -5,11 +5,9 @@
 #include <iostream>
 #include <string>
 
-#include "held.h"
 #include "nodes/exit_status.h"
 #include "scores.h"
 #include "settings.h"
-#include "start.h"
 #include "support/recordings.h"
 #include "text/files.h"
 

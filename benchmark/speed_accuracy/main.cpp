@@ -14,7 +14,6 @@
 #include "configured.h"
 #include "contender.h"
 #include "nodes/exit_status.h"
-#include "results.h"
 #include "text/command_line.h"
 
 namespace mrhi::benchmark {

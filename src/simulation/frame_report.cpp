@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "../rendering/mass_lag.h"
+#include "../rendering/renderer.h"
 #include "../response/finger_limits.h"
 #include "grasp.h"
 #include "simulation_impl.h"

@@ -1,4 +1,4 @@
-#include "holds.h"
+#include "floating_person.h"
 
 #include <algorithm>
 #include <cmath>

@@ -313,9 +313,8 @@ Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64
   Observation seen = observe(simulation, 0);
   for (std::int64_t n = 0; session.phase() == SessionPhase::running; ++n) {
     stamp = begin + static_cast<Nanoseconds>(std::llround(static_cast<double>(n) * 1e9 / stage.frame_rate));
-    const BodyState& state = simulation.state().bodies.front();
-    Sight sight = sight_of(task, session.trial().goal(), state.pose, twist_of(scene.bodies.front(), state),
-                           is_held(0, simulation.state()));
+    Sight sight =
+        sight_of(task, session.trial().goal(), seen.pose, seen.twist, is_held(0, simulation.state()));
     sight.grip = seen.grip_force.value_or(0.0);
     if (seen.person) sight.body = seen.person->pose, sight.body_twist = seen.person->twist;
     JointsFrame joints{stamp, hands_of(*person, to_seconds(stamp - begin), sight, Pose{})};

@@ -129,9 +129,8 @@ std::string shown(const std::string& text, std::size_t start, std::size_t differ
 std::vector<std::string> in_order(const SessionSetup& setup) {
   std::vector<std::string> names{"parameters.yaml", "task.yaml", "software.yaml"};
   for (const auto& [name, text] : setup.files) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (name != kSums && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
-  names.erase(std::remove(names.begin(), names.end(), kSums), names.end());
   names.emplace_back(kSums);
   return names;
 }
