@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "step_cost.h"
+#include "variant.h"
 
 namespace mrhi::ablation {
 namespace {

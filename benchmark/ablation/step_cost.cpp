@@ -1,4 +1,4 @@
-#include "step_cost.h"
+#include "variant.h"
 
 #include <algorithm>
 #include <chrono>

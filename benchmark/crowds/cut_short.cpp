@@ -1,5 +1,3 @@
-#include "cut_short.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "cut_short.h"
 #include "scenes.h"
 #include "support/fixtures.h"
 

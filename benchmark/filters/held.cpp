@@ -1,4 +1,4 @@
-#include "held.h"
+#include "scores.h"
 
 #include <algorithm>
 #include <cmath>

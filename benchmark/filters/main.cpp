@@ -5,11 +5,9 @@
 #include <iostream>
 #include <string>
 
-#include "held.h"
-#include "mr_hand_interaction/replay/recording_csv.h"
+#include "nodes/exit_status.h"
 #include "scores.h"
 #include "settings.h"
-#include "start.h"
 #include "support/recordings.h"
 #include "text/files.h"
 
@@ -119,10 +117,7 @@ int main(int argc, char** argv) {
                  "Without recordings, those in the folder MR_HAND_RECORDINGS.\n";
     return 2;
   }
-  try {
+  return mrhi::exit_status("filters", [&] {
     return mrhi::filter_benchmark::run(argv[2], {argv + 3, argv + argc});
-  } catch (const mrhi::RecordingError& error) {
-    std::cerr << "filters: " << error.what() << '\n';
-    return 1;
-  }
+  });
 }

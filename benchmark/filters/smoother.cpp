@@ -1,4 +1,4 @@
-#include "smoother.h"
+#include "takes.h"
 
 #include <Eigen/LU>
 #include <algorithm>

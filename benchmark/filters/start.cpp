@@ -1,4 +1,4 @@
-#include "start.h"
+#include "scores.h"
 
 #include <algorithm>
 #include <cmath>

@@ -18,8 +18,8 @@
 namespace mrhi::real_grasps {
 namespace {
 
-constexpr double kLed = 1e5;       // mass factor of a driven object: no hand moves it
-constexpr double kFurthest = 1e3;  // no bounds: a falling object counts as away [m]
+constexpr double kDrivenMass = 1e5;  // mass factor of a driven object: no hand moves it
+constexpr double kFurthest = 1e3;    // no bounds: a falling object counts as away [m]
 
 /// Calls `take` with each row of a table.
 template <typename Take>
@@ -111,7 +111,7 @@ template <typename Look>
 SimulationState led(const Window& window, Configuration configuration, std::size_t from, Look look) {
   configuration.gravity = Vector3::Zero();
   Scene scene = window.scene;
-  for (Body& body : scene.bodies) body.mass *= kLed, body.inertia *= kLed;
+  for (Body& body : scene.bodies) body.mass *= kDrivenMass, body.inertia *= kDrivenMass;
   Simulation simulation(scene, configuration);
   put(window, from, simulation.state(), simulation);
   for (std::size_t i = from; i <= window.free_from; ++i) {
@@ -159,14 +159,14 @@ std::vector<double> away_with(const Window& window, Side side) {
   return away;
 }
 
-void add_frames(const WindowOutcome& outcome, double limit, double angle, Share& sum) {
+void add_frames(const WindowOutcome& outcome, double limit, double angle, SuccessCount& sum) {
   sum.trials += outcome.away.size();
   for (std::size_t i = 0; i < outcome.away.size(); ++i)
     sum.successes += outcome.away[i] < limit && (outcome.turned.empty() || outcome.turned[i] < angle);
 }
 
-std::map<std::string, Share> by_capture(const std::vector<WindowOutcome>& outcomes, double limit) {
-  std::map<std::string, Share> shares;
+std::map<std::string, SuccessCount> by_capture(const std::vector<WindowOutcome>& outcomes, double limit) {
+  std::map<std::string, SuccessCount> shares;
   for (const WindowOutcome& outcome : outcomes)
     add_frames(outcome, limit, std::numeric_limits<double>::infinity(), shares[outcome.labels.capture]);
   return shares;
@@ -236,24 +236,24 @@ WindowOutcome play_rigidly(const Window& window) {
   WindowOutcome right{away_with(window, Side::right), {}, {}, window.labels},
       left{away_with(window, Side::left), {}, {}, window.labels};
   constexpr double kNear = 0.02;  // the tightest reported limit [m]
-  return share_within({right}, kNear) < share_within({left}, kNear) ? left : right;
+  return fraction_within({right}, kNear) < fraction_within({left}, kNear) ? left : right;
 }
 
-double share_within(const std::vector<WindowOutcome>& outcomes, double limit, double angle) {
-  Share sum;
+double fraction_within(const std::vector<WindowOutcome>& outcomes, double limit, double angle) {
+  SuccessCount sum;
   for (const WindowOutcome& outcome : outcomes) add_frames(outcome, limit, angle, sum);
   return sum.trials > 0 ? static_cast<double>(sum.successes) / static_cast<double>(sum.trials) : 0.0;
 }
 
-Interval share_interval(const std::vector<WindowOutcome>& outcomes, double limit) {
-  std::vector<Share> shares;
+Interval fraction_interval(const std::vector<WindowOutcome>& outcomes, double limit) {
+  std::vector<SuccessCount> shares;
   for (const auto& [capture, share] : by_capture(outcomes, limit)) shares.push_back(share);
   return bootstrapped(shares);
 }
 
 Interval difference_interval(const std::vector<WindowOutcome>& outcomes,
                              const std::vector<WindowOutcome>& baseline, double limit) {
-  std::vector<Share> shares, of_baseline;
+  std::vector<SuccessCount> shares, of_baseline;
   const auto others = by_capture(baseline, limit);
   for (const auto& [capture, share] : by_capture(outcomes, limit)) {
     shares.push_back(share);

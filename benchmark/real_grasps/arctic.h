@@ -53,11 +53,11 @@ WindowOutcome play(const Window& window, const Configuration& configuration, std
 WindowOutcome play_rigidly(const Window& window);
 
 /// Fraction of all frames with an error below `limit` [m], and below `angle` [rad] at the hinge, if any.
-double share_within(const std::vector<WindowOutcome>& outcomes, double limit,
-                    double angle = std::numeric_limits<double>::infinity());
+double fraction_within(const std::vector<WindowOutcome>& outcomes, double limit,
+                       double angle = std::numeric_limits<double>::infinity());
 
 /// Its interval at 95 % confidence: the bootstrap over captures.
-Interval share_interval(const std::vector<WindowOutcome>& outcomes, double limit);
+Interval fraction_interval(const std::vector<WindowOutcome>& outcomes, double limit);
 
 /// The same of the difference between two outcomes of each window: `outcomes` less `baseline`. There may be
 /// several of the first for each of the second.

@@ -9,11 +9,11 @@
 namespace mrhi::real_grasps {
 namespace {
 
-constexpr double kMoves = 0.03;    // [m/s]
-constexpr double kBack = -0.3;     // cosine of the normal to the direction out of the back of the hand
-constexpr double kSweeps = 0.1;    // of the palm towards the body [m/s]
-constexpr double kPart = 0.5;      // and over the phalanx's speed
-constexpr double kClosing = -0.1;  // rate of the distance between a finger's tip and the thumb's [m/s]
+constexpr double kMinSpeed = 0.03;        // [m/s]
+constexpr double kBack = -0.3;            // cosine of the normal to the direction out of the back of the hand
+constexpr double kMinPalmSpeed = 0.1;     // of the palm towards the body [m/s]
+constexpr double kMinPalmFraction = 0.5;  // and over the phalanx's speed
+constexpr double kClosing = -0.1;         // rate of the distance between a finger's tip and the thumb's [m/s]
 
 /// Contact with the largest impulse.
 const Contact* hardest(const FrameResult& result, int body, double seconds) {
@@ -34,42 +34,42 @@ double opening(const Hand& hand, int finger) {
   return (tip(std::clamp(finger, 1, kFingers - 1)) - tip(0)).norm();
 }
 
-Blow kind(const Contact& contact, const HandTrack& track, double seconds) {
+MotionCause kind(const Contact& contact, const HandTrack& track, double seconds) {
   const Hand &from = track.previous, &to = track.current;
-  if (contact.normal.dot(to.palm.orientation * Vector3::UnitZ()) < kBack) return Blow::back;
+  if (contact.normal.dot(to.palm.orientation * Vector3::UnitZ()) < kBack) return MotionCause::back;
   const double palm = -contact.normal.dot(to.palm.position - from.palm.position) / seconds;
   const double phalanx = -contact.normal.dot(contact.hand_velocity);
-  if (palm > std::max(kSweeps, kPart * phalanx)) return Blow::sweep;
+  if (palm > std::max(kMinPalmSpeed, kMinPalmFraction * phalanx)) return MotionCause::sweep;
   const int finger = finger_of(contact.key.capsule);
   const bool closes = finger < kFingers && (opening(to, finger) - opening(from, finger)) / seconds < kClosing;
-  return closes ? Blow::closing : Blow::open;
+  return closes ? MotionCause::closing : MotionCause::open;
 }
 
 }  // namespace
 
-const char* to_string(Blow blow) {
-  switch (blow) {
-    case Blow::back:
+const char* to_string(MotionCause cause) {
+  switch (cause) {
+    case MotionCause::back:
       return "back of the hand";
-    case Blow::sweep:
+    case MotionCause::sweep:
       return "hand as a whole";
-    case Blow::closing:
+    case MotionCause::closing:
       return "closing finger";
-    case Blow::open:
+    case MotionCause::open:
       break;
   }
   return "open hand";
 }
 
-std::optional<FirstBlow> first_blow(const Simulation& simulation, int body, double seconds) {
+std::optional<FirstMotion> first_motion(const Simulation& simulation, int body, double seconds) {
   const auto b = static_cast<std::size_t>(body);
   const Body& what = simulation.scene().bodies[b];
-  if (!(seconds > 0.0) || twist_of(what, simulation.state().bodies[b]).linear.norm() < kMoves)
+  if (!(seconds > 0.0) || twist_of(what, simulation.state().bodies[b]).linear.norm() < kMinSpeed)
     return std::nullopt;
   const Contact* contact = hardest(simulation.result(), body, seconds);
   if (contact == nullptr) return std::nullopt;
-  return FirstBlow{to_seconds(simulation.result().stamp),
-                   kind(*contact, simulation.state().hands[contact->key.hand], seconds)};
+  return FirstMotion{to_seconds(simulation.result().stamp),
+                     kind(*contact, simulation.state().hands[contact->key.hand], seconds)};
 }
 
 void add_finger_forces(const FrameResult& result, std::vector<double>& forces) {

@@ -1,12 +1,12 @@
 #include "contenders.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <utility>
 
 #include "../speed_accuracy/engine_module.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
+#include "text/text.h"
 
 namespace mrhi::real_grasps {
 namespace {
@@ -26,12 +26,10 @@ constexpr OurSetting kOurs[] = {
     {"implicit", 0.0, true}, {"implicit", 20000.0, true}};
 
 std::string named(const Configuration& configuration) {
-  const bool helped = configuration.contact.grasp_assist;
-  const bool papers = configuration.contact.hand.finger == HandStrength::kUnlimited && !helped;
-  char text[80];
-  std::snprintf(text, sizeof text, "%s%s; %g N/m", parameter_text(configuration, "contact_model").c_str(),
-                papers ? ", the paper's hand" : "", default_material(configuration).stiffness);
-  return text;
+  const bool assisted = configuration.contact.grasp_assist;
+  const bool papers = configuration.contact.hand.finger == HandStrength::kUnlimited && !assisted;
+  return text::format("%s%s; %g N/m", parameter_text(configuration, "contact_model").c_str(),
+                      papers ? ", the paper's hand" : "", default_material(configuration).stiffness);
 }
 
 }  // namespace

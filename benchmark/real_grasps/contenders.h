@@ -30,8 +30,8 @@ std::string engine_name(const std::string& module);
 
 /// Plays in a physics engine: the closing hand, with our filter, as kinematic capsules; steps of
 /// `configuration.step`.
-Story play_peer(const std::vector<JointsFrame>& frames, const Closing& closing, const Row& row,
-                const Configuration& configuration, const benchmark::EngineMaker& maker,
-                const std::string& setting);
+Playback play_peer(const std::vector<JointsFrame>& frames, const Closing& closing, const Row& row,
+                   const Configuration& configuration, const benchmark::EngineMaker& maker,
+                   const std::string& setting);
 
 }  // namespace mrhi::real_grasps

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "mr_hand_interaction/parameters.h"
+#include "nodes/exit_status.h"
 #include "report.h"
 #include "text/command_line.h"
 #include "text/text.h"
@@ -61,12 +62,8 @@ std::vector<Row> rows_of(const OptionValue& given) {
   const std::vector<Row> all = all_rows();
   std::vector<Row> rows;
   for (const std::string& name : text::split(given.text)) {
-    const auto row = std::find_if(all.begin(), all.end(), [&](const Row& r) { return r.name == name; });
-    if (row == all.end()) {
-      std::vector<std::string> names;
-      for (const Row& r : all) names.push_back(r.name);
-      given.refuse(text::joined(names));
-    }
+    const Row* row = text::find_named(all, name);
+    if (row == nullptr) given.refuse(text::joined(text::names_of(all)));
     rows.push_back(*row);
   }
   return rows;
@@ -85,7 +82,7 @@ std::vector<std::string> leads_of(const OptionValue& given) {
   return leads;
 }
 
-/// Empty for --help. Throws UsageError or ParameterError.
+/// Empty for --help. Throws UsageError.
 std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
   Arguments a;
   CommandLine line;
@@ -102,11 +99,12 @@ std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
   line.each("--engine", "FILE", [&](const OptionValue& given) { a.engines.push_back(given.text); });
   line.each("--set", "KEY=VALUE", [&](const OptionValue& given) {
     const auto [key, value] = given.setting();
-    set_parameter(a.configuration, key, value);
+    rethrown<UsageError, ParameterError>("",
+                                         [&, k = key, v = value] { set_parameter(a.configuration, k, v); });
   });
   line.words([&](const OptionValue& given) { a.paths.push_back(given.text); });
   if (!line.read(words)) return std::nullopt;
-  validate(a.configuration);
+  rethrown<UsageError, ParameterError>("", [&] { validate(a.configuration); });
   if (a.paths.empty() && a.arctic.empty())
     throw UsageError("a folder of recordings or --arctic is needed; see --help");
   if (a.disturbance.rate && !a.arctic.empty())
@@ -190,7 +188,7 @@ void play_closings(const std::vector<Recording>& recordings, const Arguments& ar
       const std::vector<Event> some = with_object(object, events);
       if (!some.empty()) std::cout << line("  object " + std::string(object), some) << std::endl;
     }
-    if (arguments.list) std::cout << line(lost_to(events)) << std::endl;
+    if (arguments.list) std::cout << line(loss_causes(events)) << std::endl;
     write_rows(rows, contender, row.name, events);
     write_events(closings, contender, row.name, events);
   }
@@ -241,8 +239,8 @@ void play_windows(const Arguments& arguments, const Contender& contender,
         std::cout << line(windows[i / arguments.seeds].name, {outcomes[i]}) << '\n';
     report_windows("windows", lead, outcomes, contender, csv);
     std::cout << line_against_rigid(outcomes, rigid) << std::endl;
-    spread.within_50mm.push_back(share_within(outcomes, 0.05));
-    spread.within_20mm.push_back(share_within(outcomes, 0.02));
+    spread.within_50mm.push_back(fraction_within(outcomes, 0.05));
+    spread.within_20mm.push_back(fraction_within(outcomes, 0.02));
   }
   std::cout << line(spread) << std::endl;
 }
@@ -287,7 +285,12 @@ void play_engine(const std::vector<Recording>& recordings, const Arguments& argu
 }
 
 /// Plays, prints and writes tables by the arguments. Throws std::exception with one line.
-void run(const Arguments& arguments) {
+int run(const std::optional<Arguments>& read) {
+  if (!read) {
+    std::cout << kUsage;
+    return 0;
+  }
+  const Arguments& arguments = *read;
   const std::vector<Recording> recordings = load(arguments.paths);
   begin_table(arguments, "real_grasps.csv", write_header);
   begin_table(arguments, "real_grasps_events.csv", write_events_header);
@@ -301,22 +304,13 @@ void run(const Arguments& arguments) {
     play_windows(arguments, contender, rigid);
   }
   for (const std::string& module : arguments.engines) play_engine(recordings, arguments, module);
+  return 0;
 }
 
 }  // namespace
 }  // namespace mrhi::real_grasps
 
 int main(int argc, char** argv) {
-  using namespace mrhi;
-  try {
-    if (const auto arguments = real_grasps::read_arguments({argv + 1, argv + argc}))
-      real_grasps::run(*arguments);
-    else
-      std::cout << real_grasps::kUsage;
-  } catch (const std::exception& error) {
-    std::cerr << "real_grasps: " << error.what() << '\n';
-    const bool usage = dynamic_cast<const UsageError*>(&error) || dynamic_cast<const ParameterError*>(&error);
-    return usage ? 2 : 1;
-  }
-  return 0;
+  using namespace mrhi::real_grasps;
+  return mrhi::exit_status("real_grasps", [&] { return run(read_arguments({argv + 1, argv + argc})); });
 }

@@ -35,43 +35,44 @@ Scene scene_of(const Row& row, const Closing& closing, const Configuration& conf
   return scene;
 }
 
-void look(const Simulation& simulation, Story& story) {
+void look(const Simulation& simulation, Playback& playback) {
   const FrameResult& result = simulation.result();
   const BodyState& state = simulation.state().bodies.front();
-  if (!story.blow && !story.moments.empty())
-    story.blow = first_blow(simulation, 0, to_seconds(result.stamp) - story.moments.back().time);
+  if (!playback.first_motion && !playback.moments.empty())
+    playback.first_motion =
+        first_motion(simulation, 0, to_seconds(result.stamp) - playback.moments.back().time);
   Moment moment{to_seconds(result.stamp), state.pose.position,
                 twist_of(simulation.scene().bodies.front(), state).linear};
-  for (const Contact& contact : result.contacts) moment.pressed |= contact.touching();
-  story.moments.push_back(moment);
-  for (const Grip& grip : simulation.state().grips) story.taken |= grip.active;
-  add_finger_forces(result, story.forces);
+  for (const Contact& contact : result.contacts) moment.loaded |= contact.touching();
+  playback.moments.push_back(moment);
+  for (const Grip& grip : simulation.state().grips) playback.assisted |= grip.active;
+  add_finger_forces(result, playback.forces);
   for (const Event& event : result.events) {
     const bool begins = event.kind == EventKind::grasp_begin;
     if (!begins && event.kind != EventKind::grasp_end) continue;
-    auto& first = begins ? story.grasp_began : story.grasp_ended;
+    auto& first = begins ? playback.grasp_began : playback.grasp_ended;
     if (!first) first = to_seconds(event.stamp);
   }
 }
 
 }  // namespace
 
-Story play_ours(const std::vector<JointsFrame>& frames, const Closing& closing, const Row& row,
-                const Configuration& configuration) {
+Playback play_ours(const std::vector<JointsFrame>& frames, const Closing& closing, const Row& row,
+                   const Configuration& configuration) {
   using Clock = std::chrono::steady_clock;
   Simulation simulation(scene_of(row, closing, configuration), configuration);
-  Story story;
-  story.has_grasps = true;
+  Playback playback;
+  playback.has_grasps = true;
   std::vector<std::string> left_out;
   for (const JointsFrame& joints : frames) {
     const auto frame = complete_frame(joints, device_mount(), left_out);
     if (!frame) continue;
     const auto begin = Clock::now();
     if (simulation.advance(*frame) != Rejection::none) continue;
-    story.frame_times.push_back(std::chrono::duration<double, std::micro>(Clock::now() - begin).count());
-    look(simulation, story);
+    playback.frame_times.push_back(std::chrono::duration<double, std::micro>(Clock::now() - begin).count());
+    look(simulation, playback);
   }
-  return story;
+  return playback;
 }
 
 }  // namespace mrhi::real_grasps

@@ -100,7 +100,7 @@ benchmark::World world_of(const Row& row, const Pose& place, const Parts& parts,
   return world;
 }
 
-void look(const benchmark::Engine& engine, const Parts& parts, double time, Story& story) {
+void look(const benchmark::Engine& engine, const Parts& parts, double time, Playback& playback) {
   std::array<double, kFingers + 1> sums{};
   for (std::size_t i = 0; i < parts.size(); ++i) sums[parts.finger(i)] += engine.pressing(i);
   const benchmark::Motion motion = engine.motion(0);
@@ -108,17 +108,17 @@ void look(const benchmark::Engine& engine, const Parts& parts, double time, Stor
   Moment moment{time, motion.pose.position, motion.twist.linear};
   for (const double sum : sums) {
     if (!(sum > 0.0)) continue;
-    moment.pressed = true;
-    story.forces.push_back(sum);
+    moment.loaded = true;
+    playback.forces.push_back(sum);
   }
-  story.moments.push_back(moment);
+  playback.moments.push_back(moment);
 }
 
 }  // namespace
 
-Story play_peer(const std::vector<JointsFrame>& frames, const Closing& closing, const Row& row,
-                const Configuration& configuration, const benchmark::EngineMaker& maker,
-                const std::string& setting) {
+Playback play_peer(const std::vector<JointsFrame>& frames, const Closing& closing, const Row& row,
+                   const Configuration& configuration, const benchmark::EngineMaker& maker,
+                   const std::string& setting) {
   using Clock = std::chrono::steady_clock;
   std::vector<Sample> samples = filtered_hand(frames, configuration, closing.hand);
   if (samples.size() < 2) return {};
@@ -129,7 +129,7 @@ Story play_peer(const std::vector<JointsFrame>& frames, const Closing& closing, 
       maker.make(setting, world_of(row, closing.place, parts, default_material(configuration)), step);
   if (!engine) throw std::runtime_error("the engine has no means for this world");
   engine->watch_forces();
-  Story story;
+  Playback playback;
   std::vector<Pose> now(parts.size()), next(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) now[i] = parts.pose(i, 1, 0.0);
   double time = samples.front().time;
@@ -149,10 +149,10 @@ Story play_peer(const std::vector<JointsFrame>& frames, const Closing& closing, 
       engine->after_step();
       now.swap(next);
     }
-    story.frame_times.push_back(used);
-    look(*engine, parts, samples[k].time, story);
+    playback.frame_times.push_back(used);
+    look(*engine, parts, samples[k].time, playback);
   }
-  return story;
+  return playback;
 }
 
 }  // namespace mrhi::real_grasps

@@ -23,7 +23,7 @@ struct Event {
 
 /// Statistics of a row's events.
 struct Summary {
-  std::size_t events = 0, held = 0, carried = 0, taken = 0;
+  std::size_t events = 0, held = 0, carried = 0, assisted = 0;
   std::size_t fair = 0, held_fair = 0,
               carried_fair = 0;  ///< among those moved less than kFair before the hand closed
   double force = 0.0;            ///< median of the 90th percentile of a finger's force, with contact [N]
@@ -41,17 +41,17 @@ std::vector<Event> with_object(const std::string& object, const std::vector<Even
 
 /// Causes of the first motion of lost bodies: the back of the hand, the whole hand, a closing finger, an open
 /// hand, or none observed.
-struct LostTo {
-  std::array<std::size_t, 4> blows{};  ///< by Blow
+struct LossCauses {
+  std::array<std::size_t, 4> by_cause{};  ///< by MotionCause
   std::size_t none = 0;
 };
-LostTo lost_to(const std::vector<Event>& events);
+LossCauses loss_causes(const std::vector<Event>& events);
 
 /// Each as a line of text.
 std::string line(const Event& event);
 std::string line(const std::string& name, const std::vector<Event>& events);
 std::string line(const std::string& name, const std::vector<WindowOutcome>& outcomes);
-std::string line(const LostTo& lost);
+std::string line(const LossCauses& lost);
 
 /// real_grasps.csv: a line for each contender, row and kind of object (`all`, or Recording::object).
 void write_header(std::ostream& csv);

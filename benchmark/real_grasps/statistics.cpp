@@ -34,9 +34,9 @@ Interval wilson(std::size_t successes, std::size_t trials) {
   return {successes > 0 ? middle - half : 0.0, successes < trials ? middle + half : 1.0};
 }
 
-Interval grouped(const std::vector<Share>& groups) {
-  Share all;
-  for (const Share& group : groups) all.successes += group.successes, all.trials += group.trials;
+Interval grouped(const std::vector<SuccessCount>& groups) {
+  SuccessCount all;
+  for (const SuccessCount& group : groups) all.successes += group.successes, all.trials += group.trials;
   Interval interval = wilson(all.successes, all.trials);
   if (all.trials == 0) return interval;
   const Interval resampled = bootstrapped(groups);
@@ -44,11 +44,11 @@ Interval grouped(const std::vector<Share>& groups) {
 }
 
 // Efron & Tibshirani 1993, chapter 8: resample independent units, the groups.
-Interval bootstrapped(const std::vector<Share>& groups, const std::vector<Share>& baseline) {
+Interval bootstrapped(const std::vector<SuccessCount>& groups, const std::vector<SuccessCount>& baseline) {
   Random random(1);
   std::vector<double> ratios;
   for (int i = 0; i < kResamples; ++i) {
-    Share sum, of_baseline;
+    SuccessCount sum, of_baseline;
     for (std::size_t k = 0; k < groups.size(); ++k) {
       const std::size_t drawn = random.bits() % groups.size();
       sum.successes += groups[drawn].successes, sum.trials += groups[drawn].trials;

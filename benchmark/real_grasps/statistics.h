@@ -17,17 +17,18 @@ struct Interval {
 Interval wilson(std::size_t successes, std::size_t trials);
 
 /// Successes of the trials of one group, such as a recording.
-struct Share {
+struct SuccessCount {
   std::size_t successes = 0, trials = 0;
 };
 
 /// Interval of the ratio over all groups, at 95 % confidence, if trials in a group depend on each other: the
 /// bootstrap over groups, and at least Wilson's interval, as the bootstrap is too narrow for ratios near 0
 /// and 1.
-Interval grouped(const std::vector<Share>& groups);
+Interval grouped(const std::vector<SuccessCount>& groups);
 
 /// The bootstrap over groups alone, for trials as dependent as the frames of a recording. With `baseline`, of
 /// the difference between the ratios of two sets of trials in the same groups.
-Interval bootstrapped(const std::vector<Share>& groups, const std::vector<Share>& baseline = {});
+Interval bootstrapped(const std::vector<SuccessCount>& groups,
+                      const std::vector<SuccessCount>& baseline = {});
 
 }  // namespace mrhi::real_grasps

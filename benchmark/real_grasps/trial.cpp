@@ -10,7 +10,8 @@ namespace mrhi::real_grasps {
 namespace {
 
 constexpr double kLossAllowed = 0.06;  // time before opening at which a grasp may end [s]
-constexpr double kPressed = 0.15;     // a hand that opens slowly releases before its aperture has widened [s]
+constexpr double kLoadedBefore =
+    0.15;                             // a hand that opens slowly releases before its aperture has widened [s]
 constexpr double kLeastAway = 0.025;  // minimum of the allowed distance from the grip, for small bodies [m]
 constexpr double kPalmWindow = 0.05;  // averaging time of the palm's velocity, to both sides [s]
 
@@ -30,24 +31,24 @@ Vector3 palm_velocity(const Track& track, double time) {
   return (middle(to) - middle(from)) / (to.time - from.time);
 }
 
-double fastest(const Story& story) {
+double fastest(const Playback& playback) {
   double speed = 0.0;
-  for (const Moment& moment : story.moments) speed = std::max(speed, moment.velocity.norm());
+  for (const Moment& moment : playback.moments) speed = std::max(speed, moment.velocity.norm());
   return speed;
 }
 
-void judge_release(const Story& story, const Track& track, double opens, Outcome& outcome) {
-  const auto free = std::find_if(story.moments.begin(), story.moments.end(), [opens](const Moment& moment) {
-    return moment.time > opens && !moment.pressed;
-  });
-  if (free == story.moments.end()) return;
-  outcome.let_go = free->time;
+void measure_release(const Playback& playback, const Track& track, double opens, Outcome& outcome) {
+  const auto free =
+      std::find_if(playback.moments.begin(), playback.moments.end(),
+                   [opens](const Moment& moment) { return moment.time > opens && !moment.loaded; });
+  if (free == playback.moments.end()) return;
+  outcome.released = free->time;
   outcome.release = (free->velocity - palm_velocity(track, free->time)).norm();
 }
 
-bool pressed_until(const Story& story, double time) {
-  return std::any_of(story.moments.begin(), story.moments.end(), [time](const Moment& moment) {
-    return moment.pressed && moment.time <= time && moment.time >= time - kPressed;
+bool loaded_until(const Playback& playback, double time) {
+  return std::any_of(playback.moments.begin(), playback.moments.end(), [time](const Moment& moment) {
+    return moment.loaded && moment.time <= time && moment.time >= time - kLoadedBefore;
   });
 }
 
@@ -68,23 +69,23 @@ Body body_of(const Row& row, const Pose& place, const Material& material) {
   return body;
 }
 
-Outcome outcome_of(const Story& story, const Track& track, const Closing& closing, const Row& row) {
+Outcome outcome_of(const Playback& playback, const Track& track, const Closing& closing, const Row& row) {
   Outcome outcome;
-  outcome.early = (nearest(story.moments, closing.closed).place - closing.place.position).norm();
-  outcome.away = (nearest(story.moments, closing.opens).place - closing.grip_at_end).norm();
-  outcome.force = quantile(story.forces, 0.9);
-  outcome.speed = fastest(story) / closing.hand_speed;
-  outcome.frame_times = story.frame_times;
-  outcome.taken = story.taken;
-  outcome.blow = story.blow;
-  outcome.grasp_began = story.grasp_began;
-  outcome.grasp_ended = story.grasp_ended;
-  const bool began = story.grasp_began && *story.grasp_began < closing.opens;
-  const bool lost = story.grasp_ended && *story.grasp_ended < closing.opens - kLossAllowed;
+  outcome.early = (nearest(playback.moments, closing.closed).place - closing.place.position).norm();
+  outcome.away = (nearest(playback.moments, closing.opens).place - closing.grip_at_end).norm();
+  outcome.force = quantile(playback.forces, 0.9);
+  outcome.speed = fastest(playback) / closing.hand_speed;
+  outcome.frame_times = playback.frame_times;
+  outcome.assisted = playback.assisted;
+  outcome.first_motion = playback.first_motion;
+  outcome.grasp_began = playback.grasp_began;
+  outcome.grasp_ended = playback.grasp_ended;
+  const bool began = playback.grasp_began && *playback.grasp_began < closing.opens;
+  const bool lost = playback.grasp_ended && *playback.grasp_ended < closing.opens - kLossAllowed;
   const bool in_hand = outcome.away < std::max(kLeastAway, row.size);
-  outcome.carried = in_hand && pressed_until(story, closing.opens);
-  outcome.held = story.has_grasps ? began && !lost && in_hand : outcome.carried;
-  judge_release(story, track, closing.opens, outcome);
+  outcome.carried = in_hand && loaded_until(playback, closing.opens);
+  outcome.held = playback.has_grasps ? began && !lost && in_hand : outcome.carried;
+  measure_release(playback, track, closing.opens, outcome);
   return outcome;
 }
 
@@ -92,9 +93,9 @@ Outcome play(const Recording& recording, const Closing& closing, const Row& row,
              const Disturbance& disturbance, const Player& player) {
   Outcome outcome;
   try {
-    const Story story =
+    const Playback playback =
         player(disturbed(recording.frames, closing.begin, closing.last, disturbance), closing, row);
-    if (!story.moments.empty()) return outcome_of(story, recording.tracks[closing.track], closing, row);
+    if (!playback.moments.empty()) return outcome_of(playback, recording.tracks[closing.track], closing, row);
     outcome.note = "no usable frame";
   } catch (const std::exception& error) {
     outcome.note = error.what();

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <sys/types.h>
-
+#include <map>
+#include <memory>
+#include <ostream>
 #include <string>
+#include <vector>
 
 #include "engine_module.h"
 #include "run.h"
@@ -37,5 +40,18 @@ class Contender {
   int to_child_ = -1, from_child_ = -1;
   std::string received_;
 };
+
+void write_header(std::ostream& csv);
+
+/// Writes the rows of one scene and step. `measures`: by scene, from the successful contenders; the others
+/// have failed in all of them.
+void write_rows(std::ostream& csv, const std::string& scene, double step,
+                const std::vector<std::unique_ptr<Contender>>& contenders,
+                std::map<std::string, std::vector<Measure>>& measures);
+
+/// Writes the cost of steps, a row for each successful run.
+void write_times_header(std::ostream& csv);
+void write_times(std::ostream& csv, const std::string& scene, double step,
+                 const std::vector<std::unique_ptr<Contender>>& contenders);
 
 }  // namespace mrhi::benchmark

@@ -1,13 +1,11 @@
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -15,7 +13,7 @@
 
 #include "configured.h"
 #include "contender.h"
-#include "results.h"
+#include "nodes/exit_status.h"
 #include "text/command_line.h"
 
 namespace mrhi::benchmark {
@@ -102,12 +100,9 @@ std::vector<std::unique_ptr<Contender>> race(const Plan& plan, const ScenePlan& 
 }
 
 void make_folder(const std::string& path) {
-  for (std::size_t end = 0; end != std::string::npos;) {
-    end = path.find('/', end + 1);
-    const std::string part = path.substr(0, end);
-    if (mkdir(part.c_str(), 0777) != 0 && errno != EEXIST)
-      throw std::runtime_error("--output: cannot make the folder '" + part + "': " + std::strerror(errno));
-  }
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw std::runtime_error("--output: cannot make the folder '" + path + "': " + error.message());
 }
 
 /// Charts need Python with matplotlib; without it only tables are written.
@@ -129,7 +124,12 @@ std::ofstream opened(const std::string& file) {
   return csv;
 }
 
-void run(const Arguments& arguments) {
+int run(const std::optional<Arguments>& read) {
+  if (!read) {
+    std::cout << "usage: speed_accuracy [--quick] [--scene NAME]... [--engine NAME]... --output DIR\n";
+    return 0;
+  }
+  const Arguments& arguments = *read;
   make_folder(arguments.output);
   const std::string file = arguments.output + "/speed_accuracy.csv";
   std::ofstream csv = opened(file), times = opened(arguments.output + "/step_times.csv");
@@ -155,6 +155,7 @@ void run(const Arguments& arguments) {
   }
   csv.close(), times.close();
   draw_charts(file);
+  return 0;
 }
 
 }  // namespace
@@ -163,17 +164,5 @@ void run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   using namespace mrhi::benchmark;
   std::signal(SIGPIPE, SIG_IGN);
-  try {
-    if (const auto arguments = read_arguments({argv + 1, argv + argc}))
-      run(*arguments);
-    else
-      std::cout << "usage: speed_accuracy [--quick] [--scene NAME]... [--engine NAME]... --output DIR\n";
-  } catch (const mrhi::UsageError& error) {
-    std::cerr << "speed_accuracy: " << error.what() << '\n';
-    return 2;
-  } catch (const std::exception& error) {
-    std::cerr << "speed_accuracy: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+  return mrhi::exit_status("speed_accuracy", [&] { return run(read_arguments({argv + 1, argv + argc})); });
 }

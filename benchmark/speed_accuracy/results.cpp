@@ -1,4 +1,4 @@
-#include "results.h"
+#include "contender.h"
 
 #include <cmath>
 #include <ctime>

@@ -156,11 +156,12 @@ bool ClearanceFinder::clear(const Hand& hand) const {
 ClearanceFinder::Face ClearanceFinder::face(const Hand& placed, int c, const Near& near,
                                             const ClosestFeatures& features, const AxisSpan& span) const {
   const Face nearest{features.normal, features.point, span.s0, span.s1};
-  if (features.distance > -kShallow) return nearest;
+  if (features.distance > -kMaxShallowDepth) return nearest;
   const Capsule& capsule = placed.capsules[c];
   const Capsule* before = view_->shown_before == nullptr ? nullptr : &view_->shown_before->capsules[c];
   if (const Contact* contact = touching(*view_, c, near.body, near.shape)) {
-    const bool same_side = before == nullptr || height(*before, contact->normal, contact->point) > -kShallow;
+    const bool same_side =
+        before == nullptr || height(*before, contact->normal, contact->point) > -kMaxShallowDepth;
     if (same_side && contact->normal.dot(features.normal) >= kMinSameSideCosine) return nearest;
     const double s = contact->normal.dot(capsule.end - capsule.start) < 0.0 ? 1.0 : 0.0;  // the deeper end
     const bool keeps = keeps_out(capsule, contact->normal, contact->point, features.distance);
@@ -168,7 +169,7 @@ ClearanceFinder::Face ClearanceFinder::face(const Hand& placed, int c, const Nea
   }
   if (before == nullptr || before->radius <= 0.0) return nearest;
   const auto last = finder_.closest(*before, near.body, near.shape, near.frame, kMaxSideDistance);
-  if (!last || last->distance < -kShallow || last->normal.dot(features.normal) >= kMinSameSideCosine)
+  if (!last || last->distance < -kMaxShallowDepth || last->normal.dot(features.normal) >= kMinSameSideCosine)
     return nearest;
   // A distance longer than the displacement since then leads around a corner.
   const double s = features.axis_parameter;

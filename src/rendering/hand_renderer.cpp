@@ -160,11 +160,11 @@ void HandRenderer::keep_outside(bool near) {
   }
   const HandOffset reference = offset_;
   const double min_gap = near ? finder_.find(*placed_, clearances_) : 0.0;
-  pushed_ = min_gap < -kClearDepth;
+  penetrates_ = min_gap < -kClearDepth;
   leap_ = 0.0;
-  if (pushed_ || is_offset) look_back();
-  if (pushed_) push_out(min_gap);
-  if (view_->shown_before != nullptr) keep_pace(reference);
+  if (penetrates_ || is_offset) look_back();
+  if (penetrates_) move_outside(min_gap);
+  if (view_->shown_before != nullptr) limit_pace(reference);
 }
 
 /// Called if the hand can only leave the bodies by a leap: it is then shown in them until it is clear, as in
@@ -226,7 +226,7 @@ bool HandRenderer::left_behind() {
     return contact.key.hand == view_->slot && contact.touching();
   };
   const bool held = std::any_of(view_->contacts.begin(), view_->contacts.end(), holds);
-  if (!pushed_ || held || !finder_.clear(view_->track.current)) {
+  if (!penetrates_ || held || !finder_.clear(view_->track.current)) {
     offset_.left = 0.0;
     return false;
   }

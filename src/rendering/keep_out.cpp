@@ -6,20 +6,20 @@
 namespace mrhi {
 namespace {
 
-/// Part of a hand that stays as it was shown if the hand would move too far: its offset; or the palm, which
+/// Part of a hand that is kept as it was shown if the hand would move too far: its offset; or the palm, which
 /// lags, with axes chosen by joint limits; or also its axes, about which fingers bend.
-enum class Stays { offset, palm, axes };
+enum class KeptPart { offset, palm, axes };
 
 constexpr int kMaxPasses = 12;
 /// Passes without improvement after which the hand is not brought into step any further.
-constexpr int kMaxVainPasses = 2;
+constexpr int kMaxStalledPasses = 2;
 /// A gap below this fraction of the best one is an improvement.
 constexpr double kImprovement = 0.9;
 /// Bound of a fingertip's turn in a frame: this [m] plus this fraction of the displacement of hand and
 /// bodies. The whole hand takes the rest.
 constexpr double kMinSwing = 0.0005, kSwingFraction = 0.8;
 /// Swing without a bound [m].
-constexpr double kUnbounded = 1.0;
+constexpr double kNoSwingLimit = 1.0;
 /// Distance by which a joint may move farther than the farthest tracked joint in a frame [m].
 constexpr double kPaceMargin = 0.0018;
 /// A pass that moves joints by less is the last one: new penetrations are no deeper than that [m].
@@ -235,11 +235,11 @@ class Pace {
   double limit_;
 };
 
-/// Deeper than kShallow, gaps depend on the side on which the hand was shown before, which the first search
-/// of the frame did not know: they are computed again.
-void HandRenderer::push_out(double min_gap) {
+/// Deeper than kMaxShallowDepth, gaps depend on the side on which the hand was shown before, which the first
+/// search of the frame did not know: they are computed again.
+void HandRenderer::move_outside(double min_gap) {
   const HandOffset reference = offset_;
-  if (min_gap < -ClearanceFinder::kShallow) begin_anew(reference);
+  if (min_gap < -ClearanceFinder::kMaxShallowDepth) restart(reference);
   keep_out(reference, kSwingFraction * view_->moved + kMinSwing);
 }
 
@@ -249,14 +249,14 @@ void HandRenderer::push_out(double min_gap) {
 /// Tries in order: the solved offset at the pace of pushing bodies; at the hand's own pace; then the offset
 /// that leaves the hand as it was shown, with more and more of the palm's lag. Keeps the best result that is
 /// no deeper than allowed.
-void HandRenderer::keep_pace(const HandOffset& reference) {
+void HandRenderer::limit_pace(const HandOffset& reference) {
   if (farthest_joint(before_, *placed_) <= tracked_displacement_ + kPaceMargin) return;
   const Pace pace(before_, tracked_displacement_ + kPaceMargin);
-  const double push = push_distance();
-  const Pace pushed_pace(before_, tracked_displacement_ + push + kPaceMargin);
+  const double body_moved = body_displacement();
+  const Pace body_pace(before_, tracked_displacement_ + body_moved + kPaceMargin);
   double least_beyond = pace.beyond(*placed_);
   HandOffset best = offset_;
-  const auto in_step = [&](const Pace& at, const HandOffset& nearest_to, double swing, double tolerated) {
+  const auto try_pace = [&](const Pace& at, const HandOffset& nearest_to, double swing, double tolerated) {
     at.keep(*placed_, clearances_);
     settle(nearest_to, swing, &at, tolerated);
     Pace::forget(clearances_);
@@ -266,19 +266,19 @@ void HandRenderer::keep_pace(const HandOffset& reference) {
     best = offset_;
   };
   const double swing = kSwingFraction * view_->moved + kMinSwing;
-  if (least_beyond > push) in_step(pushed_pace, reference, swing, kMaxDepth);
-  if (least_beyond > kMaxDepth && push > 0.0) in_step(pace, reference, swing, kMaxDepth);
+  if (least_beyond > body_moved) try_pace(body_pace, reference, swing, kMaxDepth);
+  if (least_beyond > kMaxDepth && body_moved > 0.0) try_pace(pace, reference, swing, kMaxDepth);
   PalmLag lag = reference.lag;
-  for (const Stays stays : {Stays::offset, Stays::palm, Stays::axes}) {
-    if (least_beyond <= kMaxDepth + push) break;
-    if (stays == Stays::palm) lag = lag_staying();
-    if (stays == Stays::axes) lag.frame = frame_staying(lag.whole);
+  for (const KeptPart kept : {KeptPart::offset, KeptPart::palm, KeptPart::axes}) {
+    if (least_beyond <= kMaxDepth + body_moved) break;
+    if (kept == KeptPart::palm) lag = lag_staying();
+    if (kept == KeptPart::axes) lag.frame = frame_staying(lag.whole);
     chain_.begin(view_->track.current, lag);
     const HandOffset stay = staying(lag);
-    begin_anew(stay);
-    in_step(pushed_pace, stay, kUnbounded, stays == Stays::offset ? kMaxDepth : kMaxPaceDepth);
+    restart(stay);
+    try_pace(body_pace, stay, kNoSwingLimit, kept == KeptPart::offset ? kMaxDepth : kMaxPaceDepth);
   }
-  leap_ = std::max(0.0, least_beyond - push);
+  leap_ = std::max(0.0, least_beyond - body_moved);
   offset_ = best;
   chain_.begin(view_->track.current, offset_.lag);
   chain_.place(offset_, *placed_);
@@ -286,7 +286,7 @@ void HandRenderer::keep_pace(const HandOffset& reference) {
 
 /// Largest displacement of a loaded body towards the hand since the previous frame [m]: n.v of the body's
 /// point at the capsule's surface, with n out of the body.
-double HandRenderer::push_distance() const {
+double HandRenderer::body_displacement() const {
   double fastest = 0.0;
   for (const Clearance& clearance : clearances_) {
     if (clearance.pressure <= 0.0) continue;
@@ -313,14 +313,14 @@ HandOffset HandRenderer::staying(const PalmLag& lag) {
 /// was shown; bending around obstacles, in favour of a shift of the whole hand.
 void HandRenderer::keep_out(const HandOffset& reference, double swing) {
   if (settle(reference, swing) > -kMaxDepth) return;
-  begin_anew(reference);
-  if (settle(reference, kUnbounded) > -kMaxDepth) return;
+  restart(reference);
+  if (settle(reference, kNoSwingLimit) > -kMaxDepth) return;
   if (view_->shown_before != nullptr) {
     const HandOffset stay = staying(offset_.lag);
-    begin_anew(stay);
-    if (settle(stay, kUnbounded) > -kMaxDepth) return;
+    restart(stay);
+    if (settle(stay, kNoSwingLimit) > -kMaxDepth) return;
   }
-  begin_anew(reference);
+  restart(reference);
   shift_out();
 }
 
@@ -331,10 +331,10 @@ void HandRenderer::keep_out(const HandOffset& reference, double swing) {
 /// tangent there. On curved surfaces, and once joints turn, it is right for small steps only, so that gaps
 /// are computed again at the solution.
 double HandRenderer::settle(const HandOffset& reference, double swing, const Pace* pace, double tolerated) {
-  const int max_vain_passes = tolerated > kMaxDepth ? kMaxPasses : kMaxVainPasses;
+  const int max_stalled_passes = tolerated > kMaxDepth ? kMaxPasses : kMaxStalledPasses;
   double min_gap = 0.0, best = std::numeric_limits<double>::lowest();
-  int vain_passes = 0;
-  for (int pass = 0; pass < kMaxPasses && vain_passes < max_vain_passes; ++pass) {
+  int stalled_passes = 0;
+  for (int pass = 0; pass < kMaxPasses && stalled_passes < max_stalled_passes; ++pass) {
     const HandOffset from = offset_;
     const OffsetBounds bounds{*last_, swing};
     OffsetProblem problem(reference, bounds, chain_, *placed_, clearances_, from);
@@ -346,14 +346,14 @@ double HandRenderer::settle(const HandOffset& reference, double swing, const Pac
     min_gap = finder_.find(*placed_, clearances_);
     if (pace != nullptr) min_gap = std::min(min_gap, pace->keep(*placed_, clearances_));
     if (min_gap > -kClearDepth) return min_gap;
-    vain_passes = pace != nullptr && min_gap < kImprovement * best ? vain_passes + 1 : 0;
+    stalled_passes = pace != nullptr && min_gap < kImprovement * best ? stalled_passes + 1 : 0;
     best = std::max(best, min_gap);
   }
   return min_gap;
 }
 
 /// Places the hand with this offset, and finds its clearances. Returns the smallest gap [m].
-double HandRenderer::begin_anew(const HandOffset& reference) {
+double HandRenderer::restart(const HandOffset& reference) {
   offset_ = reference;
   chain_.place(offset_, *placed_);
   clearances_.clear();
@@ -394,15 +394,15 @@ void HandRenderer::shift_out() {
     }
     HandOffset shifted = offset_;
     shifted.shift += shift;
-    if (begin_anew(shifted) > -kMaxDepth) return;
+    if (restart(shifted) > -kMaxDepth) return;
   }
-  lead_out();
+  trace_out();
 }
 
 /// Shifts the hand along the palm's axis on which it is outside after the shortest distance. Sphere tracing
 /// (Hart 1996): with a gap of -d the hand is still inside after less than d, so that a step of d skips no
 /// solution; kMinTraceStep ensures progress near the surface.
-void HandRenderer::lead_out() {
+void HandRenderer::trace_out() {
   constexpr double kMaxTrace = 0.5, kMinTraceStep = 0.0005;  // [m]
   finder_.begin(*view_, offset_.shift.norm() + kMaxTrace);
   const Matrix3 palm = view_->track.current.palm.orientation.toRotationMatrix();
@@ -413,7 +413,7 @@ void HandRenderer::lead_out() {
     const Vector3 axis = (direction < 3 ? 1.0 : -1.0) * palm.col(direction % 3);
     for (double gone = 0.0; gone < nearest;) {
       tried.shift = from + gone * axis;
-      const double min_gap = begin_anew(tried);
+      const double min_gap = restart(tried);
       if (min_gap > -kMaxDepth) {
         nearest = gone;
         out = tried;

@@ -1,4 +1,4 @@
-#include "mass_lag.h"
+#include "renderer.h"
 
 #include <algorithm>
 #include <cmath>

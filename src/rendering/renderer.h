@@ -7,6 +7,7 @@
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/interaction.h"
 #include "mr_hand_interaction/rendering/rendered_hand.h"
+#include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
@@ -143,7 +144,7 @@ struct HandFrameView {
 class ClearanceFinder {
  public:
   /// Up to this depth the nearest surface is the one that the hand has entered by [m].
-  static constexpr double kShallow = 0.002;
+  static constexpr double kMaxShallowDepth = 0.002;
 
   /// Keeps references.
   ClearanceFinder(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
@@ -220,19 +221,19 @@ class HandRenderer {
   void look_back();
   void place_before();
   // `reference` is the offset to stay near to; `swing` bounds a fingertip's turn in the frame [m].
-  void push_out(double min_gap);
-  void keep_pace(const HandOffset& reference);
+  void move_outside(double min_gap);
+  void limit_pace(const HandOffset& reference);
   void keep_out(const HandOffset& reference, double swing);
   double settle(const HandOffset& reference, double swing, const Pace* pace = nullptr,
                 double tolerated = kMaxDepth);
-  double begin_anew(const HandOffset& reference);
-  double push_distance() const;
+  double restart(const HandOffset& reference);
+  double body_displacement() const;
   HandOffset staying(const PalmLag& lag);
   Quaternion frame_staying(const Quaternion& whole) const;
   PalmLag lag_staying();
   double limit_displacement(const PalmLag& lag);
   void shift_out();
-  void lead_out();
+  void trace_out();
   double displacement(const HandOffset& from, const HandOffset& to);
   bool left_behind();
 
@@ -252,9 +253,9 @@ class HandRenderer {
   const HandOffset* last_ = nullptr;  // the offset of the frame before
   HandOffset offset_;
   Hand* placed_ = nullptr;
-  Hand before_;          // as it was shown at the frame before
-  bool pushed_ = false;  // bodies are in the way
-  double leap_ = 0.0;    // of a joint beyond the displacement of hand and bodies, if unavoidable [m]
+  Hand before_;              // as it was shown at the frame before
+  bool penetrates_ = false;  // bodies are in the way
+  double leap_ = 0.0;        // of a joint beyond the displacement of hand and bodies, if unavoidable [m]
   double tracked_displacement_ = 0.0;  // of the farthest joint since then [m]
   double elapsed_ = 0.0;               // since then [s]
 };
@@ -271,5 +272,31 @@ double deepest_penetration(const Hand& hand, const ContactFinder& finder, const 
 /// HandOffset::lag at `stamp`, after it has decayed since the previous frame. No joint moves in a frame by
 /// more than a person would see as a jump.
 PalmLag lag_returning(const HandOffset& offset, Nanoseconds stamp);
+
+/// Longest displacement of a rendered hand by its MassLag [m]: the hand stays at what it holds.
+constexpr double kMaxMassLag = 0.05;
+
+/// Acceleration that a hand gives to what it moves, and the mass of that.
+struct MovedMass {
+  double mass = 0.0;                       ///< of all free bodies that it moves [kg]; 0: none
+  Vector3 acceleration = Vector3::Zero();  ///< mean over the frame, by the hand alone [m/s^2]
+};
+
+/// By the forces and impulses that the result reports of the hand in `slot` over a frame of `seconds`. Bodies
+/// on joints count with all of their linkage. Weight that the hand carries is no acceleration.
+MovedMass moved_mass(int slot, double seconds, const Scene& scene, const Vector3& gravity,
+                     const FrameResult& result);
+
+/// Ratio of the tracked hand's displacement to that of the rendered hand, while it accelerates `mass` from
+/// rest faster than the lag returns: from 1 without mass to `largest` for an infinite one.
+double control_display_ratio(double largest, double mass);
+
+/// The lag at `stamp`, after a frame in which the hand moved `moved`. In the frame the lag d obeys
+///     d'' + 2 w d' + w^2 d = -(1 - 1 / r) a
+/// with r the mass's control-to-display ratio, a its acceleration, and w the rate of the return.
+void advance_mass_lag(double largest, const MovedMass& moved, Nanoseconds stamp, MassLag& lag);
+
+/// The hand of a track as it lags: its poses in world at the frame's start and end, by the lags of then.
+void lag_behind(const MassLag& before, const MassLag& now, const HandTrack& track, HandTrack& lagging);
 
 }  // namespace mrhi

@@ -302,12 +302,12 @@ void paint_skin(const Skin& skin, const RenderedHand& rendered, const SkinSurfac
   }
 }
 
-void press_flat(const std::vector<Contact>& contacts, const SimulationState& state, std::uint32_t hand,
-                const Skin& skin, SkinSurface& surface) {
+void flatten_pads(const std::vector<Contact>& contacts, const SimulationState& state, std::uint32_t hand,
+                  const Skin& skin, SkinSurface& surface) {
   for (const Contact& contact : contacts) {
     if (!contact.touching() || state.hands[contact.key.hand].current.id != hand) continue;
     const double force = std::abs(contact.normal.dot(contact.force));
-    const double depth = kDeepestPress * (1.0 - std::exp(-force / kCompressionForce));
+    const double depth = kMaxPadCompression * (1.0 - std::exp(-force / kCompressionForce));
     const double around = kFlattenedRadius * contact.radius;
     for (std::size_t v = 0; v < skin.size(); ++v) {
       if (!same_part(contact.key.capsule, skin.model().looks[v].capsule)) continue;

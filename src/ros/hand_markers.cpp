@@ -141,7 +141,7 @@ void HandMarkers::add(const FrameResult& result, const SimulationState& state, c
       add_capsules(rendered.hand, rendered.touching, kHandStyle, id, hand);
       if (apart) add_capsules(tracked, {}, kGhostStyle, id, ghost);
     } else if (style.skins) {
-      press_flat(result.contacts, state, rendered.hand.id, skin_, surface_);
+      flatten_pads(result.contacts, state, rendered.hand.id, skin_, surface_);
       paint_skin(skin_, rendered, surface_, colours_);
       alphas_.assign(skin_.size(), 1.0f);
       add_skin(skin_, rendered.hand.side, id, hand);

@@ -3,7 +3,7 @@
 #include <numeric>
 #include <optional>
 
-#include "../rendering/mass_lag.h"
+#include "../rendering/renderer.h"
 #include "../response/finger_limits.h"
 #include "simulation_impl.h"
 

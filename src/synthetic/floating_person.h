@@ -1,16 +1,40 @@
 #pragma once
 
 #include <array>
-#include <deque>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "holds.h"
 #include "motions.h"
 #include "mr_hand_interaction/scene/scene.h"
-#include "operator.h"
+#include "person.h"
 
 namespace mrhi {
+
+/// A hand on something, in a frame of its owner's.
+struct Handhold {
+  Pose wrist;
+  HandPosture open, near, closed;  ///< near: just off the surface
+  Vector3 retreat;                 ///< unit: direction in which the open hand leaves
+};
+
+/// A cylinder of the surroundings that fits into a hand.
+struct Rail {
+  Vector3 centre, axis;  ///< axis: unit [world]
+  double half_length, radius;
+
+  double distance(const Vector3& from) const;
+  /// Power grip at the place nearest to `at`, of a person with this orientation: the palm towards the rail,
+  /// the thumb up or to the other hand. In world.
+  Handhold hold(Side side, const Vector3& at, const Quaternion& person) const;
+};
+
+/// The rails among the scene's fixtures. Throws std::invalid_argument if there is none.
+std::vector<Rail> rails_of(const Scene& scene);
+
+/// Holds of an object that is to go to `place`, in its frame: by two upright bars with both hands, or with
+/// the right hand by grasp_of(), and throws as that does.
+std::vector<std::pair<Side, Handhold>> holds_of(const Body& object, const Vector3& place);
 
 /// What a person who floats does for a goal.
 struct FloatingGoal {
@@ -48,7 +72,7 @@ class FloatingPerson : public Person {
   enum class Frame : std::uint8_t { body, path, seen };
   struct Arm {
     Frame frame = Frame::body;
-    std::vector<Keyframe> way;
+    std::vector<Keyframe> keyframes;
     double began = 0.0;
     HandPlace now;         ///< in the operator's frame
     bool on_rail = false;  ///< closed round it
@@ -63,14 +87,10 @@ class FloatingPerson : public Person {
     Twist begins, travel, ends;  ///< travel: displacement and rotation [m], [rad]
     Pose at(double time) const;
   };
-  struct Moment {
-    double time;
-    Sight sight;
-  };
 
   void decide(double time);
   bool come_to_rest(double time, const std::optional<Vector3>& place);
-  void go_along(double time, const Vector3& at, const Vector3& ahead);
+  void glide_along(double time, const Vector3& at, const Vector3& ahead);
   void bring(double time, const FloatingGoal& goal);
   void carry(double time, const Vector3& place);
   Twist recoil(const Vector3& moved) const;
@@ -78,8 +98,8 @@ class FloatingPerson : public Person {
   void work(double time, const FloatingGoal& goal);
 
   void take_rail(double time, std::size_t first, std::size_t last, const Vector3& ahead);
-  void take(double time, std::size_t hand, Hold hold);
-  void let_go(double delay);
+  void take(double time, std::size_t hand, Handhold hold);
+  void release(double delay);
   void rest_hands(double time);
   void correct(double since);
   void drift(double time);
@@ -88,27 +108,22 @@ class FloatingPerson : public Person {
   void stop(double time);
   void set_path(double time, double duration, const Twist& travel, const Twist& ends);
   void begin(double time, std::size_t hand, Frame frame);
-  void then(std::size_t hand, double duration, const Pose& wrist, const HandPosture& posture,
-            const Vector3& velocity = Vector3::Zero());
   static std::size_t arm_of(Side side) { return side == Side::left ? kLeft : kRight; }
   const Rail& nearest_rail(const Vector3& to) const;
   Pose frame(double time, Frame frame) const;
+  Pose expected_body(double time) const;
   Pose rest_pose(std::size_t hand) const;
   double take_time() const;
-  double paced(double seconds) const { return skill_.pace * seconds; }
 
-  OperatorSkill skill_;
   std::vector<FloatingGoal> goals_;
   Pose link_in_body_;
   double mass_;      ///< of the body [kg]
   Matrix3 inertia_;  ///< of it, body axes
   std::vector<Rail> rails_;
   Body object_;
-  std::vector<std::pair<Side, Hold>> holds_;  ///< of the object, in its frame
-  Random random_;
-  std::array<Tremor, kHands> tremor_;
+  std::vector<std::pair<Side, Handhold>> holds_;  ///< of the object, in its frame
+  Tremor right_tremor_;                           ///< Person's is of the left hand
 
-  std::deque<Moment> past_;  ///< sights within the reaction time
   std::array<Arm, kHands> arms_;
   std::array<HandPlace, kHands> shown_;
   BodyPath path_;

@@ -25,7 +25,7 @@ constexpr double kMinFacing = 0.75;        // cosine of a surface's normal and t
 constexpr double kPalmHeight = 0.045;
 
 /// Part of a line that is within the body: where it enters and leaves, with outward normals.
-struct Span {
+struct Chord {
   double begin, end;  ///< [m] along the line
   Vector3 begin_normal, end_normal;
 };
@@ -48,7 +48,7 @@ class Surface {
   }
 
   /// The parts of the line through `at` along the unit vector `direction` that are within the body, in order.
-  std::vector<Span> along(Vector3 at, const Vector3& direction) const {
+  std::vector<Chord> along(Vector3 at, const Vector3& direction) const {
     at += Vector3(1.3e-6, 0.7e-6, 1.1e-6);  // past the edges of symmetric meshes
     std::vector<Crossing> crossings;
     for (const Triangle& triangle : triangles_) {
@@ -63,16 +63,16 @@ class Surface {
     }
     std::sort(crossings.begin(), crossings.end(),
               [](const Crossing& one, const Crossing& other) { return one.distance < other.distance; });
-    std::vector<Span> spans;
+    std::vector<Chord> chords;
     int depth = 0;  // of solids that overlap
     for (const Crossing& crossing : crossings) {
       const int before = depth;
       depth += crossing.step;
-      if (before == 0 && depth == 1) spans.push_back({crossing.distance, 0.0, crossing.normal, {}});
+      if (before == 0 && depth == 1) chords.push_back({crossing.distance, 0.0, crossing.normal, {}});
       if (before == 1 && depth == 0)
-        spans.back().end = crossing.distance, spans.back().end_normal = crossing.normal;
+        chords.back().end = crossing.distance, chords.back().end_normal = crossing.normal;
     }
-    return depth == 0 ? spans : std::vector<Span>();
+    return depth == 0 ? chords : std::vector<Chord>();
   }
 
   struct Sample {
@@ -148,12 +148,12 @@ std::vector<Place> find_places(const Surface& surface, double& narrowest) {
   constexpr double kLeverCost = 0.3, kObliqueCost = 0.003, kAlikeDistance = 0.012, kAlikeAxis = 0.95;
   std::vector<Place> all;
   const auto add = [&](const Vector3& at, const Vector3& axis, double extra, bool through_at) {
-    const std::vector<Span> spans = surface.along(at, axis);
-    for (std::size_t i = 0; i < spans.size(); ++i)
-      for (std::size_t j = i; j < spans.size(); ++j) {
-        const double begin = spans[i].begin, end = spans[j].end, width = end - begin;
+    const std::vector<Chord> chords = surface.along(at, axis);
+    for (std::size_t i = 0; i < chords.size(); ++i)
+      for (std::size_t j = i; j < chords.size(); ++j) {
+        const double begin = chords[i].begin, end = chords[j].end, width = end - begin;
         const bool faces =
-            -spans[i].begin_normal.dot(axis) > kMinFacing && spans[j].end_normal.dot(axis) > kMinFacing;
+            -chords[i].begin_normal.dot(axis) > kMinFacing && chords[j].end_normal.dot(axis) > kMinFacing;
         if (!faces || (through_at && std::min(std::abs(begin), std::abs(end)) > 1e-4)) continue;
         narrowest = std::min(narrowest, width);
         if (width > kMaxWidth) continue;
@@ -276,9 +276,9 @@ std::optional<Closing> make_closing(const Surface& surface, const Place& place, 
   for (int finger = 0; finger <= 4; ++finger) {
     const double side = finger == 0 ? -1.0 : 1.0, level = 0.5 * place.width;
     const double x = finger == 0 ? 0.0 : (finger - 2) * kFingerSpacing;
-    for (const Span& span : surface.along(place.centre + x * axes.col(0), y)) {
-      const double along = finger == 0 ? span.begin : span.end;
-      const Vector3& normal = finger == 0 ? span.begin_normal : span.end_normal;
+    for (const Chord& chord : surface.along(place.centre + x * axes.col(0), y)) {
+      const double along = finger == 0 ? chord.begin : chord.end;
+      const Vector3& normal = finger == 0 ? chord.begin_normal : chord.end_normal;
       if (std::abs(side * along - level) > kLevel) continue;
       const bool opposes = side * normal.dot(y) > kMinFacing && finger < 4;
       (opposes ? closing.contacts : touching).push_back(contact(finger, along, kThumbDepth, normal));
@@ -298,7 +298,7 @@ std::optional<Closing> make_closing(const Surface& surface, const Place& place, 
 
 /// How far fingertips stay from their contacts [m].
 struct Misses {
-  double pressing, any;
+  double loaded, any;
 };
 
 Misses misses(Grasp grasp, double gap) {
@@ -306,9 +306,9 @@ Misses misses(Grasp grasp, double gap) {
   grasp.preferred = within_limits(human_hand(), grasp.preferred);
   Misses worst{0.0, 0.0};
   for (const FingertipContact& contact : grasp.contacts) {
-    const double error = grasp.reach_contact(contact, gap, kIterations).error;
+    const double error = grasp.solve_contact(contact, gap, kIterations).error;
     worst.any = std::max(worst.any, error);
-    if (contact.depth > 0.0) worst.pressing = std::max(worst.pressing, error);
+    if (contact.depth > 0.0) worst.loaded = std::max(worst.loaded, error);
   }
   return worst;
 }
@@ -331,7 +331,7 @@ GraspFit fit(const Closing& closing) {
     const auto error_at = [&](double y, double z) {
       grasp.wrist.position = wrist + Vector3(0.0, y, z);
       const Misses closed = misses(grasp, -1.0), open = misses(grasp, 0.5 * grasp.opening);
-      return closed.pressing + 0.3 * closed.any + 0.2 * open.pressing + kMoveCost * std::hypot(y, z);
+      return closed.loaded + 0.3 * closed.any + 0.2 * open.loaded + kMoveCost * std::hypot(y, z);
     };
     double y = 0.0, z = 0.0, least = error_at(y, z);
     for (double step = kFirstStep; step >= kLastStep;) {
@@ -383,13 +383,13 @@ std::optional<Grasp> find_grasp(const Surface& surface, const std::vector<Place>
                                 const std::vector<Option>& options, const Obstacle& obstacle,
                                 const std::function<bool(const Grasp&)>& holds) {
   constexpr std::size_t kMaxTried = 40;
-  constexpr double kMaxError = 0.006, kGraze = 0.0005, kMaxDepth = 0.006;  // [m]
-  constexpr double kAlike = 0.8;                                           // cosine of two palm directions
-  std::vector<std::pair<double, Grasp>> grazing;                           // by depth
+  constexpr double kMaxError = 0.006, kMaxGrazeDepth = 0.0005, kMaxDepth = 0.006;  // [m]
+  constexpr double kSimilarPalm = 0.8;            // cosine of two palm directions
+  std::vector<std::pair<double, Grasp>> grazing;  // by depth
   std::vector<Option> tried;
   for (const Option& option : options) {
     const auto is_alike = [&](const Option& other) {
-      return option.place == other.place && option.palm.dot(other.palm) > kAlike;
+      return option.place == other.place && option.palm.dot(other.palm) > kSimilarPalm;
     };
     if (std::any_of(tried.begin(), tried.end(), is_alike)) continue;
     tried.push_back(option);
@@ -403,8 +403,8 @@ std::optional<Grasp> find_grasp(const Surface& surface, const std::vector<Place>
         Grasp grasp = placed(found.grasp, *closing);
         grasp.opening *= opening;
         const double depth = approach_depth(obstacle, grasp);
-        if (depth <= kMaxDepth && depth > kGraze) grazing.emplace_back(depth, grasp);
-        if (depth > kGraze) continue;
+        if (depth <= kMaxDepth && depth > kMaxGrazeDepth) grazing.emplace_back(depth, grasp);
+        if (depth > kMaxGrazeDepth) continue;
         if (holds(grasp)) return grasp;
         break;
       }
@@ -449,9 +449,9 @@ std::size_t only_free_body(const Scene& scene) {
 
 ScriptedMotion motion_of(const Scene& scene, const Body& body, const Grasp& in_body) {
   const Grasp grasp = in_body.turned(body.start.orientation);
-  constexpr double kAside = 0.15;  // farther away, so that the hand does not pass the object [m]
+  constexpr double kStartOffset = 0.15;  // farther away, so that the hand does not pass the object [m]
   ScriptedMotion motion =
-      reach_and_carry(scene.name.c_str(), grasp, body.start.position, kAside * grasp.retreat);
+      reach_and_carry(scene.name.c_str(), grasp, body.start.position, kStartOffset * grasp.retreat);
   motion.name = "grasp_object";
   return motion;
 }

@@ -1,4 +1,4 @@
-#include "holds.h"
+#include "floating_person.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,18 +11,18 @@ namespace {
 constexpr double kMaxRailRadius = 0.03, kMinRailLength = 0.3;  // of a cylinder that is held as a rail [m]
 constexpr double kMaxBar = 0.03, kMinBar = 0.1;  // width and length of a bar by which an object is held [m]
 
-constexpr double kPalmDepth = 0.003;    // of the palm beyond the bar's surface [m]
-constexpr double kDepth = 0.005;        // of the closed fingers, likewise [m]
-constexpr double kGap = 0.001;          // of the fingers before they touch [m]
-constexpr double kStep = M_PI / 360.0;  // of a joint that closes [rad]
+constexpr double kPalmDepth = 0.003;           // of the palm beyond the bar's surface [m]
+constexpr double kClosedDepth = 0.005;         // of the closed fingers, likewise [m]
+constexpr double kOpenGap = 0.001;             // of the fingers before they touch [m]
+constexpr double kFlexionStep = M_PI / 360.0;  // of a joint that closes [rad]
 
 /// Distance of the line through `bar` along y from the segment, seen along the line [m].
 double distance(const Vector3& bar, const Vector3& start, const Vector3& end) {
   const auto flat = [](const Vector3& v) { return Vector3(v.x(), 0.0, v.z()); };
   const Vector3 from = flat(start - bar), along = flat(end - start);
   const double length = along.squaredNorm();
-  const double share = length > 0.0 ? std::clamp(-from.dot(along) / length, 0.0, 1.0) : 0.0;
-  return (from + share * along).norm();
+  const double fraction = length > 0.0 ? std::clamp(-from.dot(along) / length, 0.0, 1.0) : 0.0;
+  return (from + fraction * along).norm();
 }
 
 /// Smallest distance from the line of the bones that a joint moves [m].
@@ -39,7 +39,7 @@ double distance(const FingerSkeleton& finger, const FingerAngles& angles, Finger
 FingerAngles close_round(const FingerSkeleton& finger, FingerAngles angles, const Vector3& bar, double off) {
   static_assert(kBaseFlexion == 1 && kMiddleFlexion == 2 && kEndFlexion == 3, "a joint moves its bone");
   for (const FingerJoint joint : {kBaseFlexion, kMiddleFlexion, kEndFlexion}) {
-    for (FingerAngles next = angles; next[joint] <= finger.upper[joint]; next[joint] += kStep) {
+    for (FingerAngles next = angles; next[joint] <= finger.upper[joint]; next[joint] += kFlexionStep) {
       if (distance(finger, next, joint, bar) < off) break;
       angles = next;
     }
@@ -83,9 +83,9 @@ Grasp grasp_to_throw(const Body& object, const Vector3& direction) {
                                         [&](const auto& a, const auto& b) { return cost(a) < cost(b); }));
 }
 
-Hold hold_of(const Grasp& grasp) {
+Handhold hold_of(const Grasp& grasp) {
   const GraspPostures postures(grasp);
-  return {grasp.wrist, postures.open, postures.near, postures.pressing, grasp.retreat};
+  return {grasp.wrist, postures.open, postures.near, postures.closed, grasp.retreat};
 }
 
 }  // namespace
@@ -96,8 +96,8 @@ PowerGrip::PowerGrip(double radius) {
   bar.z() -= radius - kPalmDepth;
   open = posture_of_degrees(
       {{40, 0, 0, 0, 0}, {-25, -5, -5, -5, -5}, {0, 25, 25, 25, 25}, {0, 15, 15, 15, 15}, {50}});
-  near = close_round(open, bar, radius, kGap);
-  closed = close_round(open, bar, radius, -kDepth);
+  near = close_round(open, bar, radius, kOpenGap);
+  closed = close_round(open, bar, radius, -kClosedDepth);
 }
 
 double Rail::distance(const Vector3& from) const {
@@ -105,7 +105,7 @@ double Rail::distance(const Vector3& from) const {
   return (off - std::clamp(axis.dot(off), -half_length, half_length) * axis).norm();
 }
 
-Hold Rail::hold(Side side, const Vector3& at, const Quaternion& person) const {
+Handhold Rail::hold(Side side, const Vector3& at, const Quaternion& person) const {
   const double sign = side == Side::left ? -1.0 : 1.0;
   const PowerGrip grip(radius);
   Vector3 dorsal = person * -Vector3::UnitY();
@@ -136,11 +136,11 @@ std::vector<Rail> rails_of(const Scene& scene) {
   return rails;
 }
 
-std::vector<std::pair<Side, Hold>> holds_of(const Body& object, const Vector3& place) {
+std::vector<std::pair<Side, Handhold>> holds_of(const Body& object, const Vector3& place) {
   const std::vector<Vector3> bars = bars_of(object);
   if (bars.size() != 2)
     return {{Side::right, hold_of(grasp_to_throw(object, (place - object.start.position).normalized()))}};
-  Hold right = hold_of(shipped_grasp("long_cuboid")), left = right;
+  Handhold right = hold_of(shipped_grasp("long_cuboid")), left = right;
   left.wrist = mirrored(right.wrist), left.retreat.x() *= -1.0;
   left.wrist.position += bars[0], right.wrist.position += bars[1];
   return {{Side::left, left}, {Side::right, right}};

@@ -9,13 +9,12 @@
 namespace mrhi {
 namespace {
 
-constexpr double kApproachLength = 0.10;  // straight to the object with the hand open [m]
-constexpr double kAside = 0.16;           // further away, where the hand comes from [m]
+constexpr double kStartDistance = 0.16;  // further away, where the hand comes from [m]
 
 /// Opens the hand around an object at `at`, withdraws it to `off` along `retreat` and on to `aside`.
 void release(Script& script, const GraspPostures& postures, const Pose& at, const Pose& off,
              const Vector3& retreat, const Pose& aside) {
-  script.then(0.7, at, postures.near).by_way_of(postures.touching, 1.0 - postures.touching_share);
+  script.then(0.7, at, postures.near).via_posture(postures.touching, 1.0 - postures.touching_fraction);
   script.then(0.5, at, postures.open).then(0.7, off, postures.open, 0.1 * retreat);
   script.then(0.8, aside, relaxed_posture());
 }
@@ -35,8 +34,8 @@ class GraspScript {
     const Pose before = shifted(at_, distance * retreat_);
     if (script_.motion().keyframes.empty()) script_.then(0.0, shifted(before, aside), relaxed_posture());
     script_.then(0.9, before, postures_.open, -speed * retreat_).then(0.8, at_, postures_.open);
-    script_.then(0.6, at_, postures_.near).then(0.7, at_, postures_.pressing);
-    script_.by_way_of(postures_.touching, postures_.touching_share);
+    script_.then(0.6, at_, postures_.near).then(0.7, at_, postures_.closed);
+    script_.via_posture(postures_.touching, postures_.touching_fraction);
     return *this;
   }
   GraspScript& hold(double duration) {
@@ -45,13 +44,13 @@ class GraspScript {
   }
   GraspScript& slide(double duration, const Vector3& by) {
     at_ = shifted(at_, by);
-    script_.then(duration, at_, postures_.pressing);
+    script_.then(duration, at_, postures_.closed);
     return *this;
   }
   GraspScript& turn_about(double duration, const Vector3& centre, const Quaternion& by) {
     at_ = {centre + by * (at_.position - centre), by * at_.orientation};
     retreat_ = by * retreat_;
-    script_.then(duration, at_, postures_.pressing).round(centre);
+    script_.then(duration, at_, postures_.closed).round(centre);
     return *this;
   }
   ScriptedMotion let_go(const Vector3& aside) {
@@ -76,7 +75,7 @@ void carry_and_release(Script& script, const Grasp& grasp, const GraspPostures& 
   const Pose target = Pose{centre, Quaternion::Identity()} * carried;
   const Pose wrist = target * grasp.wrist;
   const Vector3 retreat = carried.orientation * grasp.retreat;
-  release(script.then(1.4, wrist, postures.pressing).hold(0.6), postures, wrist,
+  release(script.then(1.4, wrist, postures.closed).hold(0.6), postures, wrist,
           shifted(wrist, kApproachLength * retreat), retreat,
           shifted(wrist, kApproachLength * retreat + aside));
 }
@@ -89,7 +88,7 @@ Make carry(const char* object, const Vector3& aside) {
 }
 
 ScriptedMotion catch_ball() {
-  constexpr double kMeet = 0.7, kClose = 0.3, kPress = 0.4, kStop = 0.5, kStart = 0.4;  // [s]
+  constexpr double kMeet = 0.7, kClose = 0.3, kSqueeze = 0.4, kStop = 0.5, kStart = 0.4;  // [s]
   const Vector3 velocity(0.0, -0.3, 0.0);
   const Grasp grasp = shipped_grasp("ball").turned(turn(90.0, Vector3::UnitX()));
   const GraspPostures postures(grasp);
@@ -97,19 +96,20 @@ ScriptedMotion catch_ball() {
     return Pose{ball, Quaternion::Identity()} * grasp.wrist;
   };
   const Vector3 met = scene_object() + kMeet * velocity;
-  const Vector3 near = met + kClose * velocity, closed = near + kPress * velocity;
+  const Vector3 near = met + kClose * velocity, closed = near + kSqueeze * velocity;
   const Vector3 stopped = closed + 0.5 * kStop * velocity;
   Script script("ball");
-  script.object_twist({velocity, Vector3::Zero()});
   script.then(0.0, wrist_round(met - 0.5 * kStart * velocity), postures.open).hold(kMeet - kStart);
   script.then(kStart, wrist_round(met), postures.open, velocity);
   script.then(kClose, wrist_round(near), postures.near, velocity);
-  script.then(kPress, wrist_round(closed), postures.pressing, velocity);
-  script.by_way_of(postures.touching, postures.touching_share);
-  script.then(kStop, wrist_round(stopped), postures.pressing).hold(0.3);
+  script.then(kSqueeze, wrist_round(closed), postures.closed, velocity);
+  script.via_posture(postures.touching, postures.touching_fraction);
+  script.then(kStop, wrist_round(stopped), postures.closed).hold(0.3);
   const Pose carried{{0.0, 0.08, 0.06}, turn(20.0, Vector3::UnitX())};
   carry_and_release(script, grasp, postures, stopped, carried, {0.08, 0.0, -0.05});
-  return script.motion();
+  ScriptedMotion motion = script.motion();
+  motion.object_twist.linear = velocity;
+  return motion;
 }
 
 constexpr double kHalfCube = 0.025;
@@ -121,15 +121,15 @@ Vector3 touching_tip(const Vector3& normal) {
 }
 
 ScriptedMotion nudge() {
-  constexpr double kSpeed = 0.1, kWay = 0.09;
+  constexpr double kSpeed = 0.1, kStroke = 0.09;
   const HandPosture posture = pointing_posture();
   const Vector3 forward = Vector3::UnitY();
   const Pose contact = wrist_for_index_tip(
       touching_tip(-forward), hand_pose(Vector3::Zero(), {0.0, 1.0, -0.1}, {0.0, 0.1, 1.0}), posture);
-  const Pose ready = shifted(contact, -0.5 * kWay * forward);
-  const Pose pushed = shifted(contact, 0.5 * kWay * forward);
+  const Pose ready = shifted(contact, -0.5 * kStroke * forward);
+  const Pose pushed = shifted(contact, 0.5 * kStroke * forward);
   const Pose away = shifted(ready, {0.06, -0.10, 0.04});
-  const double stroke = kPeakSpeed * kWay / kSpeed;
+  const double stroke = kPeakSpeed * kStroke / kSpeed;
   Script script("cube");
   script.at(0.0, away, relaxed_posture()).at(0.9, ready, posture).at(1.1, ready, posture);
   script.at(1.1 + stroke, pushed, posture).at(1.6 + stroke, pushed, posture);
@@ -140,9 +140,9 @@ ScriptedMotion tap() {
   constexpr double kSpeed = 0.5, kSwing = 40.0 * M_PI / 180.0;
   HandPosture touching = pointing_posture();
   touching.col(1) << 0.0, 0.1, 0.35, 0.2, 0.0;
-  HandPosture raised = touching, struck = touching;
+  HandPosture raised = touching, lowered = touching;
   raised(kBaseFlexion, 1) -= 0.5 * kSwing;
-  struck(kBaseFlexion, 1) += 0.5 * kSwing;
+  lowered(kBaseFlexion, 1) += 0.5 * kSwing;
   const auto finger = finger_joints(human_hand().fingers[1], touching.col(1));
   const double stroke = kPeakSpeed * kSwing * (finger[4] - finger[1]).norm() / kSpeed;
   // Pitch at which the tip is level with its knuckle on hitting the cube, so that it moves straight down.
@@ -155,7 +155,7 @@ ScriptedMotion tap() {
   const Pose away = shifted(at, {0.06, -0.16, 0.06});
   Script script("cube");
   script.at(0.0, away, relaxed_posture()).at(1.0, at, raised).at(1.3, at, raised);
-  script.at(1.3 + stroke, at, struck).at(1.7 + stroke, at, raised).at(2.1 + stroke, at, raised);
+  script.at(1.3 + stroke, at, lowered).at(1.7 + stroke, at, raised).at(2.1 + stroke, at, raised);
   return script.at(3.1 + stroke, away, relaxed_posture()).motion();
 }
 
@@ -222,14 +222,14 @@ Grasp rail_grasp(double width) {
 
 const Vector3 kBeside(0.03, -0.08, 0.03);  // start and end of the hand [m]
 
-/// A fingertip that touches at `place`, moves on by `way` in `duration`, and returns.
-Make push(const Vector3& place, const Vector3& normal, const Vector3& way, double duration) {
+/// A fingertip that touches at `place`, moves on by `displacement` in `duration`, and returns.
+Make push(const Vector3& place, const Vector3& normal, const Vector3& displacement, double duration) {
   return [=] {
     const Pose at = touching(place, normal), off = shifted(at, 0.03 * normal);
     const HandPosture posture = pointing_posture();
     Script script("panel");
     script.then(0.0, shifted(off, kBeside), relaxed_posture()).then(0.9, off, posture).hold(0.2);
-    script.then(duration, shifted(at, way), posture).hold(0.4).then(0.8 * duration, off, posture);
+    script.then(duration, shifted(at, displacement), posture).hold(0.4).then(0.8 * duration, off, posture);
     return script.then(0.9, shifted(off, kBeside), relaxed_posture()).motion();
   };
 }
@@ -239,17 +239,17 @@ constexpr double kHatchFace = 0.115;  // a fingertip that rotates a latch is thi
 /// The fingertip moves a latch, 45 mm from its axle, `up` or down by a quarter turn. Keyframes with
 /// velocities every 30 degrees keep it on the arc.
 void turn_latch(Script& script, const Vector3& axle, double up) {
-  constexpr double kArm = 0.04, kUnder = 0.006, kParts = 3.0, kAngle = M_PI / 2.0, kTime = 2.0;
+  constexpr double kRadius = 0.04, kGapBelow = 0.006, kParts = 3.0, kAngle = M_PI / 2.0, kTime = 2.0;
   const double radius = human_hand().fingers[1].radius;
   const HandPosture posture = pointing_posture();
   const auto tip = [&](double angle, double under) {
     const double c = std::cos(angle), s = std::sin(angle);
-    return Vector3(axle.x() + kArm * c + under * s, kHatchFace, axle.z() + up * (kArm * s - under * c));
+    return Vector3(axle.x() + kRadius * c + under * s, kHatchFace, axle.z() + up * (kRadius * s - under * c));
   };
   const auto wrist = [&](double angle, double under) {
     return wrist_for_index_tip(tip(angle, under), pointing_forward(), posture);
   };
-  const double touching = kUnder + radius, off = touching + 0.015;
+  const double touching = kGapBelow + radius, off = touching + 0.015;
   const Vector3 back(0.0, -0.04, 0.0);
   script.then(0.9, shifted(wrist(0.0, off), back), posture).then(0.5, wrist(0.0, off), posture);
   script.then(0.5, wrist(0.0, touching), posture, Vector3::Zero());
@@ -263,7 +263,7 @@ void turn_latch(Script& script, const Vector3& axle, double up) {
 }
 
 /// Spacing of the fingers on an arm of tongs, over that on a cube.
-constexpr double kApart = 1.3;
+constexpr double kTongsSpacing = 1.3;
 
 /// Grasp of the arms of tongs at half their length, each arm at `angle` from the middle; in the frame of the
 /// scene's object.
@@ -272,7 +272,7 @@ Grasp tongs_grasp(double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   for (FingertipContact& contact : grasp.contacts) {
     contact.depth *= 1.7;  // the arms comply, and the grip with them
-    const double side = contact.finger == 0 ? -1.0 : 1.0, along = 0.07 + kApart * contact.point.x();
+    const double side = contact.finger == 0 ? -1.0 : 1.0, along = 0.07 + kTongsSpacing * contact.point.x();
     contact.normal = {-s, side * c, 0.0};
     contact.point = Vector3(-0.07 + along * c, side * along * s, 0.0) + 0.004 * contact.normal;
   }
@@ -295,16 +295,17 @@ ScriptedMotion open_hatch() {
 
 ScriptedMotion squeeze_tongs() {
   const Grasp open_grasp = tongs_grasp(0.29);
-  const GraspPostures half(tongs_grasp(0.2)), closed(tongs_grasp(0.1));
+  const GraspPostures half_squeezed(tongs_grasp(0.2)), squeezed(tongs_grasp(0.1));
   const Pose at = Pose{scene_object(), Quaternion::Identity()} * open_grasp.wrist;
   const Pose before = shifted(at, kApproachLength * open_grasp.retreat);
-  const Vector3 aside(0.05, -kAside, 0.02);
+  const Vector3 aside(0.05, -kStartDistance, 0.02);
   GraspScript grip(Script("tongs"), open_grasp, scene_object());
-  const GraspPostures& open = grip.take(aside, kApproachLength, 0.15).postures();
+  const GraspPostures& postures = grip.take(aside, kApproachLength, 0.15).postures();
   Script& script = grip.script();
   for (int squeeze = 0; squeeze < 2; ++squeeze)
-    script.then(1.0, at, closed.pressing).hold(0.3).then(1.0, at, half.pressing).hold(0.2);
-  release(script.then(0.5, at, open.pressing), open, at, before, open_grasp.retreat, shifted(before, aside));
+    script.then(1.0, at, squeezed.closed).hold(0.3).then(1.0, at, half_squeezed.closed).hold(0.2);
+  release(script.then(0.5, at, postures.closed), postures, at, before, open_grasp.retreat,
+          shifted(before, aside));
   return script.motion();
 }
 
@@ -332,11 +333,11 @@ struct MotionEntry {
   Make make;
 };
 const MotionEntry kMotions[] = {
-    {"grasp_cube", carry("cube", {0.05, -kAside, 0.02})},
-    {"grasp_ball", carry("ball", {0.05, -kAside, 0.02})},
+    {"grasp_cube", carry("cube", {0.05, -kStartDistance, 0.02})},
+    {"grasp_ball", carry("ball", {0.05, -kStartDistance, 0.02})},
     {"catch_ball", catch_ball},
-    {"pinch_long", carry("long_cuboid", {0.04, -kAside, 0.0})},
-    {"lift_flat", carry("flat_cuboid", {0.04, -kAside + 0.08, -0.04})},
+    {"pinch_long", carry("long_cuboid", {0.04, -kStartDistance, 0.0})},
+    {"lift_flat", carry("flat_cuboid", {0.04, -kStartDistance + 0.08, -0.04})},
     {"nudge", nudge},
     {"tap", tap},
     {"slap", slap},

@@ -14,6 +14,8 @@ inline Vector3 scene_object() {
   return {0.0, 0.0, 0.22};
 }
 
+constexpr double kApproachLength = 0.10;  ///< straight to the object with the hand open [m]
+
 /// Hand frame at `wrist`, with x along `fingers` and z as close to `dorsal` as possible.
 Pose hand_pose(const Vector3& wrist, const Vector3& fingers, const Vector3& dorsal);
 
@@ -22,6 +24,13 @@ Quaternion turn(double degrees, const Vector3& axis);
 
 /// Wrist pose that puts the right hand's index tip at `tip`, with the orientation of `direction`.
 Pose wrist_for_index_tip(const Vector3& tip, const Pose& direction, const HandPosture& posture);
+
+/// Adds a keyframe `duration` after the last one, or after 0 [s].
+inline void append(std::vector<Keyframe>& keyframes, double duration, const Pose& wrist,
+                   const HandPosture& posture, const Vector3& velocity = Vector3::Zero()) {
+  const double start = keyframes.empty() ? 0.0 : keyframes.back().time;
+  keyframes.push_back({start + duration, wrist, posture, velocity});
+}
 
 /// Builds a motion keyframe by keyframe.
 class Script {
@@ -36,26 +45,22 @@ class Script {
   /// `duration` after the last keyframe [s].
   Script& then(double duration, const Pose& wrist, const HandPosture& posture,
                const Vector3& velocity = Vector3::Zero()) {
-    const double start = motion_.keyframes.empty() ? 0.0 : motion_.keyframes.back().time;
-    return at(start + duration, wrist, posture, velocity);
+    append(motion_.keyframes, duration, wrist, posture, velocity);
+    return *this;
   }
   Script& hold(double duration) {
     const Keyframe last = motion_.keyframes.back();
     return then(duration, last.wrist, last.posture);
   }
-  /// Adds a posture on the way to the last keyframe.
-  Script& by_way_of(const HandPosture& posture, double share) {
+  /// Adds a posture between the last two keyframes, at this fraction of the path.
+  Script& via_posture(const HandPosture& posture, double fraction) {
     motion_.keyframes.back().via = posture;
-    motion_.keyframes.back().via_share = share;
+    motion_.keyframes.back().via_share = fraction;
     return *this;
   }
   /// Makes the path to the last keyframe an arc about a point, with which the hand rotates.
   Script& round(const Vector3& centre) {
     motion_.keyframes.back().centre = centre;
-    return *this;
-  }
-  Script& object_twist(const Twist& twist) {
-    motion_.object_twist = twist;
     return *this;
   }
   ScriptedMotion motion() const { return motion_; }
@@ -67,8 +72,9 @@ class Script {
 inline Pose shifted(const Pose& pose, const Vector3& by) {
   return {pose.position + by, pose.orientation};
 }
+std::vector<Keyframe> shifted(std::vector<Keyframe> keyframes, const Vector3& by);
 
-struct Reach {
+struct FingerSolution {
   FingerAngles angles;
   double error;  ///< remaining distance between tip and target [m]
 };
@@ -76,8 +82,8 @@ struct Reach {
 /// Inverse kinematics of a finger: angles within the limits that bring the end of the last bone to `target`
 /// (right hand's frame), as close to `preferred` as possible. Damped least squares with the preference in the
 /// null space (Nakamura & Hanafusa 1986).
-Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAngles& preferred,
-            int iterations = 200);
+FingerSolution solve_finger(const FingerSkeleton& finger, const Vector3& target,
+                            const FingerAngles& preferred, int iterations = 200);
 
 /// Planned contact of a fingertip: a point of the object's surface and the outward normal there.
 struct FingertipContact {
@@ -98,7 +104,7 @@ struct Grasp {
   Grasp turned(const Quaternion& by) const;
   /// Reaches for a contact, so that the tip, as a sphere of the finger's radius, is `gap` off the surface; if
   /// gap is negative, at the contact's depth.
-  Reach reach_contact(const FingertipContact& contact, double gap, int iterations = 200) const;
+  FingerSolution solve_contact(const FingertipContact& contact, double gap, int iterations = 200) const;
   /// The preferred posture with the fingers of the contacts placed likewise.
   HandPosture posture(double gap) const;
 };
@@ -107,8 +113,8 @@ struct Grasp {
 /// Between the last three each tip moves in proportion to its depth. So springs that balance at the full
 /// depths balance throughout, and closing and opening do not push the object.
 struct GraspPostures {
-  HandPosture open, near, touching, pressing;
-  double touching_share;  ///< fraction of the path from near to holding
+  HandPosture open, near, touching, closed;
+  double touching_fraction;  ///< fraction of the path from near to holding
 
   explicit GraspPostures(const Grasp& grasp);
 };
@@ -145,7 +151,7 @@ class GripPostures {
 
  private:
   double deepest_;
-  std::vector<HandPosture> pressed_;  ///< evenly spaced from depth 0 to the deepest
+  std::vector<HandPosture> closed_;  ///< evenly spaced from depth 0 to the deepest
 };
 
 /// A right hand round a bar, which lies across the palm, along y of the hand's frame. The fingers close until

@@ -1,4 +1,4 @@
-#include "operator.h"
+#include "person.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,54 +38,41 @@ OperatorSkill skill_of(double Figure::*group) {
   return skill;
 }
 
-constexpr double kSlow = 0.05;     // faster objects are not pursued [m/s]
-constexpr double kGetReady = 0.9;  // at pace 1, before a motion [s]
-constexpr double kBehind = 0.35;   // distance of the waiting hand behind its target [m]
-
-HandPlace waiting(const Vector3& object) {
-  return {hand_pose(object + Vector3(0.05, -kBehind, 0.05), Vector3::UnitY(), Vector3::UnitZ()),
-          relaxed_posture()};
-}
+constexpr double kMaxTargetSpeed = 0.05;          // faster objects are not pursued [m/s]
+constexpr double kPreparationTime = 0.9;          // at pace 1, before a motion [s]
+const Vector3 kWaitingOffset(0.05, -0.35, 0.05);  // of the waiting hand from its target [m]
 
 double half_height(const Body& body) {
   const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
   return box != nullptr ? box->half_extents.z() : body.bounding_radius;
 }
 
-std::vector<Keyframe> moved(std::vector<Keyframe> way, const Vector3& by) {
-  for (Keyframe& key : way) {
-    key.wrist.position += by;
-    if (key.centre) *key.centre += by;
-  }
-  return way;
-}
-
 /// Returns the keyframes up to `end`.
-std::vector<Keyframe> until(std::vector<Keyframe> way, double end) {
-  way.erase(std::find_if(way.begin(), way.end(), [&](const Keyframe& key) { return key.time > end; }),
-            way.end());
-  return way;
+std::vector<Keyframe> until(std::vector<Keyframe> keys, double end) {
+  keys.erase(std::find_if(keys.begin(), keys.end(), [&](const Keyframe& key) { return key.time > end; }),
+             keys.end());
+  return keys;
 }
 
 /// Returns the keyframes of the last `seconds`, with times from their start.
-std::vector<Keyframe> last(std::vector<Keyframe> way, double seconds) {
-  const double begin = way.back().time - seconds;
-  way.erase(way.begin(),
-            std::find_if(way.begin(), way.end(), [&](const Keyframe& key) { return key.time >= begin; }));
-  for (Keyframe& key : way) key.time -= begin;
-  return way;
+std::vector<Keyframe> last(std::vector<Keyframe> keys, double seconds) {
+  const double begin = keys.back().time - seconds;
+  keys.erase(keys.begin(),
+             std::find_if(keys.begin(), keys.end(), [&](const Keyframe& key) { return key.time >= begin; }));
+  for (Keyframe& key : keys) key.time -= begin;
+  return keys;
 }
 
-std::vector<Keyframe> backwards(const std::vector<Keyframe>& way) {
+std::vector<Keyframe> backwards(const std::vector<Keyframe>& keys) {
   std::vector<Keyframe> back;
-  for (auto key = way.rbegin(); key != way.rend(); ++key) {
+  for (auto key = keys.rbegin(); key != keys.rend(); ++key) {
     Keyframe other = *key;
-    other.time = way.back().time - key->time;
+    other.time = keys.back().time - key->time;
     other.velocity = -key->velocity;
-    other.centre = key == way.rbegin() ? std::nullopt : (key - 1)->centre;
-    other.via_share = key == way.rbegin() ? 0.0 : 1.0 - (key - 1)->via_share;
-    if (key != way.rbegin() && (key - 1)->via_share == 0.0) other.via_share = 0.0;
-    other.via = key == way.rbegin() ? other.via : (key - 1)->via;
+    other.centre = key == keys.rbegin() ? std::nullopt : (key - 1)->centre;
+    other.via_share = key == keys.rbegin() ? 0.0 : 1.0 - (key - 1)->via_share;
+    if (key != keys.rbegin() && (key - 1)->via_share == 0.0) other.via_share = 0.0;
+    other.via = key == keys.rbegin() ? other.via : (key - 1)->via;
     back.push_back(other);
   }
   return back;
@@ -94,8 +81,8 @@ std::vector<Keyframe> backwards(const std::vector<Keyframe>& way) {
 /// A finger pushes the object along x of `about`, and the palm stops it at its target.
 std::vector<Keyframe> nudge_and_stop(const Vector3& object, const Vector3& place) {
   const std::vector<Keyframe> nudge = make_motion("nudge").keyframes, slap = make_motion("slap").keyframes;
-  const Vector3 way_to_go = place - object;
-  const Quaternion along(Eigen::AngleAxisd(std::atan2(way_to_go.y(), way_to_go.x()), Vector3::UnitZ()));
+  const Vector3 path = place - object;
+  const Quaternion along(Eigen::AngleAxisd(std::atan2(path.y(), path.x()), Vector3::UnitZ()));
   const auto at = [&](const Vector3& from, const Quaternion& turned, const Pose& wrist) {
     return Pose{from, along * turned} * Pose{wrist.position - scene_object(), wrist.orientation};
   };
@@ -164,46 +151,57 @@ Vector3 Tremor::at(double time) const {
   return sum;
 }
 
+Pose expected(const Pose& pose, const Twist& twist, double seconds) {
+  return {pose.position + seconds * twist.linear,
+          (rotation_by(seconds * twist.angular) * pose.orientation).normalized()};
+}
+
+bool Person::remember(const Moment& now) {
+  const double latest = now.time - skill_.reaction_time;
+  past_.push_back(now);
+  while (past_.size() > 1 && past_[1].time <= latest) past_.pop_front();
+  return past_.front().time <= latest;
+}
+
 PractisedPerson::PractisedPerson(const OperatorSkill& skill, std::vector<std::optional<PractisedGoal>> goals,
                                  const Body& object, std::uint64_t seed)
-    : skill_(skill),
+    : Person(skill, seed),
       goals_(std::move(goals)),
       object_(object),
-      random_(seed),
-      tremor_(skill.tremor, random_),
-      now_(waiting(scene_object())) {}
+      now_{hand_pose(scene_object() + kWaitingOffset, Vector3::UnitY(), Vector3::UnitZ()),
+           relaxed_posture()} {}
 
 HandPlace PractisedPerson::move(double time, const Sight& sight) {
-  const bool busy = !way_.empty() && time < began_ + way_.back().time;
+  const bool busy = !keyframes_.empty() && time < began_ + keyframes_.back().time;
   if (!busy && !looked_) looked_ = Moment{time, sight};
   if (!busy && looked_ && time >= looked_->time + skill_.reaction_time) {
     look(time, *looked_);
     looked_.reset();
   }
-  if (!way_.empty()) now_ = hand_at(way_, time - began_);
+  if (!keyframes_.empty()) now_ = hand_at(keyframes_, time - began_);
   HandPlace place = now_;
   place.wrist.position += tremor_.at(time);
   return place;
 }
 
 bool PractisedPerson::ready(const PractisedGoal& goal, const Sight& sight) const {
-  return goal.skill == Skilled::catch_ball ? sight.twist.linear.y() < -kSlow
-                                           : sight.twist.linear.norm() < kSlow;
+  return goal.skill == Skilled::catch_ball ? sight.twist.linear.y() < -kMaxTargetSpeed
+                                           : sight.twist.linear.norm() < kMaxTargetSpeed;
 }
 
 /// Moves the hand to the start of the motion, waits for its time, and performs it.
 void PractisedPerson::look(double time, const Moment& seen) {
   const std::size_t goal = seen.sight.goal;
   if (goal >= goals_.size() || !goals_[goal] || !ready(*goals_[goal], seen.sight)) return;
-  double begin = time + kGetReady * skill_.pace;
+  double begin = time + paced(kPreparationTime);
   const std::vector<Keyframe> does =
-      moved(motion(*goals_[goal], seen, begin), random_.gaussian_vector(skill_.placing_error));
-  const double earliest = time + kGetReady * skill_.pace;
+      shifted(motion(*goals_[goal], seen, begin), random_.gaussian_vector(skill_.placing_error));
+  const double earliest = time + paced(kPreparationTime);
   if (begin < earliest) return;
-  way_ = {{0.0, now_.wrist, now_.posture}};
+  keyframes_ = {{0.0, now_.wrist, now_.posture}};
   for (Keyframe key : does) {
     key.time += begin - time;
-    way_.push_back(key);
+    keyframes_.push_back(key);
   }
   began_ = time;
 }
@@ -214,19 +212,19 @@ std::vector<Keyframe> PractisedPerson::motion(const PractisedGoal& goal, const M
   const Vector3 object = seen.sight.object.position, off = object - scene_object();
   switch (goal.skill) {
     case Skilled::tap:
-      return moved(make_motion("tap").keyframes, off + Vector3(0.0, 0.0, half_height(object_) - kCube));
+      return shifted(make_motion("tap").keyframes, off + Vector3(0.0, 0.0, half_height(object_) - kCube));
     case Skilled::slap:
-      return moved(make_motion("slap").keyframes, off);
+      return shifted(make_motion("slap").keyframes, off);
     case Skilled::nudge:
       return nudge_and_stop(object, goal.place);
     case Skilled::catch_ball: {
       const double flight = object.y() / -seen.sight.twist.linear.y();
       begin = seen.time + flight;
       const Vector3 met = object + flight * seen.sight.twist.linear;
-      return moved(make_motion("catch_ball").keyframes, met - scene_object());
+      return shifted(make_motion("catch_ball").keyframes, met - scene_object());
     }
     case Skilled::press_button:
-      return moved(make_motion("press_button").keyframes, Vector3(0.0, 0.0, 0.17 - 0.36));
+      return shifted(make_motion("press_button").keyframes, Vector3(0.0, 0.0, 0.17 - 0.36));
     default:
       return hatch_motion(goal.skill);
   }

@@ -10,18 +10,18 @@ namespace mrhi {
 namespace {
 
 /// Parabola through the postures at the fractions 0, via_share and 1 of the path.
-HandPosture posture_between(const Keyframe& from, const Keyframe& to, double share) {
-  const HandPosture straight = from.posture + share * (to.posture - from.posture);
+HandPosture posture_between(const Keyframe& from, const Keyframe& to, double fraction) {
+  const HandPosture straight = from.posture + fraction * (to.posture - from.posture);
   if (to.via_share <= 0.0) return straight;
   const double v = to.via_share;
   const HandPosture bow = to.via - from.posture - v * (to.posture - from.posture);
-  return straight + share * (1.0 - share) / (v * (1.0 - v)) * bow;
+  return straight + fraction * (1.0 - fraction) / (v * (1.0 - v)) * bow;
 }
 
 /// Rotates position and orientation about the centre by the same fraction of the rotation between both ends.
-Pose on_arc(const Keyframe& from, const Keyframe& to, double share) {
+Pose on_arc(const Keyframe& from, const Keyframe& to, double fraction) {
   const Quaternion turn = to.wrist.orientation * from.wrist.orientation.conjugate();
-  const Quaternion part = Quaternion::Identity().slerp(share, turn);
+  const Quaternion part = Quaternion::Identity().slerp(fraction, turn);
   const Vector3 arm = from.wrist.position - *to.centre;
   return {*to.centre + part * arm, (part * from.wrist.orientation).normalized()};
 }
@@ -33,6 +33,14 @@ Pose mirrored(const Pose& wrist) {
   const Quaternion half_turn(0.0, 0.0, 0.0, 1.0);
   return {Vector3(-wrist.position.x(), wrist.position.y(), wrist.position.z()),
           Quaternion(q.w(), q.x(), -q.y(), -q.z()) * half_turn};
+}
+
+std::vector<Keyframe> shifted(std::vector<Keyframe> keyframes, const Vector3& by) {
+  for (Keyframe& key : keyframes) {
+    key.wrist.position += by;
+    if (key.centre) *key.centre += by;
+  }
+  return keyframes;
 }
 
 Pose hand_pose(const Vector3& wrist, const Vector3& fingers, const Vector3& dorsal) {
@@ -60,14 +68,14 @@ HandPlace hand_at(const std::vector<Keyframe>& keys, double time) {
   const Keyframe &from = *(next - 1), &to = *next;
   const double duration = to.time - from.time;
   const double t = (time - from.time) / duration;
-  const double share = minimum_jerk(t);
-  if (to.centre) return {on_arc(from, to, share), posture_between(from, to, share)};
+  const double fraction = minimum_jerk(t);
+  if (to.centre) return {on_arc(from, to, fraction), posture_between(from, to, fraction)};
   const Pose wrist{
       minimum_jerk(from.wrist.position, from.velocity, to.wrist.position, to.velocity, duration, t),
-      from.wrist.orientation.slerp(share, to.wrist.orientation).normalized()};
+      from.wrist.orientation.slerp(fraction, to.wrist.orientation).normalized()};
   const HandPosture still = HandPosture::Zero();
   return {wrist,
-          posture_between(from, to, share) + minimum_jerk(still, from.rate, still, to.rate, duration, t)};
+          posture_between(from, to, fraction) + minimum_jerk(still, from.rate, still, to.rate, duration, t)};
 }
 
 Pose default_device_mount() {

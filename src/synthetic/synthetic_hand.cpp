@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "../text/files.h"
@@ -11,8 +10,8 @@
 namespace mrhi {
 namespace {
 
-constexpr double kStill = 0.0002, kFast = 0.0012, kCommon = 0.0002;  // [m] rms
-constexpr double kFastSpeed = 1.0;                                   // [m/s]
+constexpr double kRestNoise = 0.0002, kFastNoise = 0.0012, kCommonNoise = 0.0002;  // [m] rms
+constexpr double kFastSpeed = 1.0;                                                 // [m/s]
 
 const HandJoints* find(const JointsFrame& frame, std::uint32_t id) {
   for (const HandJoints& hand : frame.hands) {
@@ -29,9 +28,7 @@ Side side_of(const std::string& name) {
 
 double in_range(const char* name, double value, double lowest, double highest) {
   if (value >= lowest && value <= highest) return value;
-  std::ostringstream message;
-  message << name << " is " << value << ": use " << lowest << " to " << highest;
-  throw std::invalid_argument(message.str());
+  throw std::invalid_argument(text::format("%s is %g: use %g to %g", name, value, lowest, highest));
 }
 
 constexpr const char* kFingerNames[] = {"thumb", "index", "middle", "ring", "pinky"};
@@ -75,7 +72,7 @@ void TrackingNoise::apply(JointsFrame& frame) {
 }
 
 void TrackingNoise::disturb(HandJoints& hand, const HandJoints* before, double elapsed) {
-  const Vector3 common = random_.gaussian_vector(amplitude_ * kCommon);
+  const Vector3 common = random_.gaussian_vector(amplitude_ * kCommonNoise);
   if (hand.palm_centre) *hand.palm_centre += common;
   if (hand.wrist) *hand.wrist += common;
   for (std::size_t finger = 0; finger < kFingers; ++finger) {
@@ -86,7 +83,7 @@ void TrackingNoise::disturb(HandJoints& hand, const HandJoints* before, double e
       if (before != nullptr && elapsed > 0.0 && before->joints[finger][j]) {
         speed = (*joint - *before->joints[finger][j]).norm() / elapsed;
       }
-      const double deviation = kStill + (kFast - kStill) * std::min(1.0, speed / kFastSpeed);
+      const double deviation = kRestNoise + (kFastNoise - kRestNoise) * std::min(1.0, speed / kFastSpeed);
       *joint += common + random_.gaussian_vector(amplitude_ * deviation);
     }
   }

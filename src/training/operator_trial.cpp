@@ -72,12 +72,13 @@ void make_body(const TaskObject& object, const std::string& urdf, const Scene& s
   model.request.twist = object.twist;
 }
 
-constexpr double kReach = 0.35;      // of the arm, in each direction from the object's start [m]
-constexpr double kFallen = 0.05;     // below the stand [m]
-constexpr double kHalfStand = 0.02;  // [m]
-constexpr double kSlap = 1.0;    // a goal whose maximum speed is at least this is a slap, else a tap [m/s]
-constexpr double kAjar = 0.1;    // [rad]
-constexpr double kFlight = 3.5;  // longest time for which a passing object is followed [s]
+constexpr double kArmReach = 0.35;      // of the arm, in each direction from the object's start [m]
+constexpr double kFallDistance = 0.05;  // below the stand [m]
+constexpr double kHalfStand = 0.02;     // [m]
+constexpr double kMinSlapSpeed =
+    1.0;  // a goal whose maximum speed is at least this is a slap, else a tap [m/s]
+constexpr double kMaxClosedAngle = 0.1;  // [rad]
+constexpr double kMaxFlightTime = 3.5;   // longest time for which a passing object is followed [s]
 
 /// Height of the centre of mass above the body's lowest point at the start [m].
 double half_height(const Body& body) {
@@ -104,14 +105,14 @@ std::optional<PractisedGoal> practised(const Goal& goal) {
     case GoalKind::nudge_into:
       return PractisedGoal{Skilled::nudge, goal.position};
     case GoalKind::strike:
-      return PractisedGoal{goal.max_speed < kSlap ? Skilled::tap : Skilled::slap};
+      return PractisedGoal{goal.max_speed < kMinSlapSpeed ? Skilled::tap : Skilled::slap};
     case GoalKind::release:
       return std::nullopt;
     default:
       break;
   }
   if (goal.joint == "button_3_slide") return PractisedGoal{Skilled::press_button};
-  if (goal.joint == "hatch_hinge" && goal.below < kAjar) return PractisedGoal{Skilled::close_hatch};
+  if (goal.joint == "hatch_hinge" && goal.below < kMaxClosedAngle) return PractisedGoal{Skilled::close_hatch};
   if (goal.joint == "hatch_hinge") return PractisedGoal{Skilled::pull_hatch};
   if (goal.joint == "latch_top_axle" || goal.joint == "latch_bottom_axle")
     return PractisedGoal{Skilled::open_hatch};
@@ -186,9 +187,9 @@ Scene load_surroundings(const Task& task, const std::vector<std::string>& scene_
     if (b >= scene.bodies.size() || scene.bodies[b].fixed || scene.bodies[b].is_operator) continue;
     remove_body(b, scene);
   }
-  const bool asked =
+  const bool needs_operator =
       std::any_of(task.goals.begin(), task.goals.end(), [](const Goal& goal) { return goal.of_operator; });
-  if (asked && scene.operators.empty())
+  if (needs_operator && scene.operators.empty())
     throw SceneError(urdf + ": has no operator, whose rest a goal of task '" + task.name +
                      "' asks for; allowed: a scene with 'operator' in its YAML file");
   return scene;
@@ -214,15 +215,15 @@ std::unique_ptr<Person> make_person(const OperatorSkill& skill, const Task& task
 }
 
 Body stand_under(const Body& body) {
-  constexpr double kRail = 0.006, kFlat = 0.01;
+  constexpr double kHalfRail = 0.006, kMaxFlatHeight = 0.01;
   Body stand;
   stand.name = "stand";
   stand.fixed = true;
   stand.material = body.material;
   const auto* box = std::get_if<Box>(&body.shapes.at(0).shape);
-  if (box != nullptr && box->half_extents.z() < kFlat) {
-    const Vector3 rail(kRail, box->half_extents.y(), kHalfStand),
-        end(box->half_extents.x() - kRail, 0.0, 0.0);
+  if (box != nullptr && box->half_extents.z() < kMaxFlatHeight) {
+    const Vector3 rail(kHalfRail, box->half_extents.y(), kHalfStand),
+        end(box->half_extents.x() - kHalfRail, 0.0, 0.0);
     stand.shapes.push_back({Box{rail}, {end, Quaternion::Identity()}});
     stand.shapes.push_back({Box{rail}, {-end, Quaternion::Identity()}});
   } else {
@@ -242,21 +243,21 @@ Scene operator_scene(const Task& task, const TaskObject& object, const OperatorS
     append(load_fixture(fixture, stage.scene_folders, stage.scene_options).scene, scene);
   const Scene surroundings = load_surroundings(task, stage.scene_folders, stage.scene_options);
   append(surroundings, scene);
-  scene.bounds = {object.start.position.array() - kReach, object.start.position.array() + kReach};
-  const Vector3 end = object.start.position + kFlight * object.twist.linear;
-  scene.bounds.min = scene.bounds.min.cwiseMin((end.array() - kReach).matrix());
-  scene.bounds.max = scene.bounds.max.cwiseMax((end.array() + kReach).matrix());
+  scene.bounds = {object.start.position.array() - kArmReach, object.start.position.array() + kArmReach};
+  const Vector3 end = object.start.position + kMaxFlightTime * object.twist.linear;
+  scene.bounds.min = scene.bounds.min.cwiseMin((end.array() - kArmReach).matrix());
+  scene.bounds.max = scene.bounds.max.cwiseMax((end.array() + kArmReach).matrix());
   if (!task.scene.empty()) scene.bounds = surroundings.bounds;
   if (task.gravity != Vector3::Zero() && !model.is_device()) {
     scene.bodies.push_back(stand_under(scene.bodies.front()));
     const Body& stand = scene.bodies.back();
-    scene.bounds.min.z() = stand.start.position.z() - kHalfStand - kFallen;
+    scene.bounds.min.z() = stand.start.position.z() - kHalfStand - kFallDistance;
   }
   return scene;
 }
 
 Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twist& twist, bool held) {
-  constexpr double kOutside = 0.05;  // distance of the hole's rim from the goal's position [m]
+  constexpr double kRimDistance = 0.05;  // distance of the hole's rim from the goal's position [m]
   Sight sight;
   sight.object = object;
   sight.twist = twist;
@@ -272,7 +273,7 @@ Sight sight_of(const Task& task, std::size_t goal, const Pose& object, const Twi
   const Vector3 axis = next->orientation * *next->axis, off = object.position - next->position;
   const double along = off.dot(axis);
   const bool beside = (off - along * axis).norm() > next->tolerance / 4.0;
-  if (beside) *sight.place += std::copysign(kOutside, along) * axis;
+  if (beside) *sight.place += std::copysign(kRimDistance, along) * axis;
   return sight;
 }
 
@@ -312,9 +313,8 @@ Nanoseconds play_trial(Session& session, const OperatorSkill& skill, std::uint64
   Observation seen = observe(simulation, 0);
   for (std::int64_t n = 0; session.phase() == SessionPhase::running; ++n) {
     stamp = begin + static_cast<Nanoseconds>(std::llround(static_cast<double>(n) * 1e9 / stage.frame_rate));
-    const BodyState& state = simulation.state().bodies.front();
-    Sight sight = sight_of(task, session.trial().goal(), state.pose, twist_of(scene.bodies.front(), state),
-                           is_held(0, simulation.state()));
+    Sight sight =
+        sight_of(task, session.trial().goal(), seen.pose, seen.twist, is_held(0, simulation.state()));
     sight.grip = seen.grip_force.value_or(0.0);
     if (seen.person) sight.body = seen.person->pose, sight.body_twist = seen.person->twist;
     JointsFrame joints{stamp, hands_of(*person, to_seconds(stamp - begin), sight, Pose{})};

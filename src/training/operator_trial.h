@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../synthetic/operator.h"
+#include "../synthetic/person.h"
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/scene/object_request.h"
 #include "mr_hand_interaction/scene/scene.h"

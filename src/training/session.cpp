@@ -129,9 +129,8 @@ std::string shown(const std::string& text, std::size_t start, std::size_t differ
 std::vector<std::string> in_order(const SessionSetup& setup) {
   std::vector<std::string> names{"parameters.yaml", "task.yaml", "software.yaml"};
   for (const auto& [name, text] : setup.files) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (name != kSums && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
-  names.erase(std::remove(names.begin(), names.end(), kSums), names.end());
   names.emplace_back(kSums);
   return names;
 }
@@ -188,7 +187,7 @@ Session::Session(Task task, const SessionHeader& header, std::uint64_t place, co
           planned.repetition == row.repetition && task_->objects[planned.object].name == row.object;
     }
   }
-  go_on_from(0);
+  advance_to(0);
   log_event(folder_.resumed() ? "session_resumed" : "session_begun", now);
 }
 
@@ -204,7 +203,7 @@ const TaskObject& Session::object() const {
   return task_->objects[planned().object];
 }
 
-void Session::go_on_from(std::size_t position) {
+void Session::advance_to(std::size_t position) {
   position_ = position;
   while (position_ < plan_.size() && plan_[position_].done) ++position_;
   phase_ = position_ < plan_.size() ? SessionPhase::ready : SessionPhase::finished;
@@ -249,7 +248,7 @@ void Session::repeat(Nanoseconds now) {
     end(TrialResult::aborted, now);
   } else if (position_ > 0) {
     plan_[position_ - 1].done = false;
-    go_on_from(position_ - 1);
+    advance_to(position_ - 1);
   }
   log_event("repeat", now);
 }
@@ -277,7 +276,7 @@ void Session::note_result() {
   last_ = TrialRow{number_, object().name, planned().repetition, trial_.result(), start_, trial_.measures()};
   folder_.log(*last_);
   plan_[position_].done = trial_.result() != TrialResult::aborted;
-  go_on_from(position_);
+  advance_to(position_);
 }
 
 void Session::log_trial_events() {

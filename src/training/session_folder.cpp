@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <locale>
@@ -90,10 +91,10 @@ std::vector<std::vector<std::string>> rows_in(const std::string& file, const std
 
 /// Seconds with nine decimals: a double has too few digits for nanoseconds since 1970.
 std::string stamp_text(Nanoseconds stamp) {
-  constexpr Nanoseconds kSecond = 1'000'000'000;
-  std::string decimals = std::to_string(stamp % kSecond);
+  constexpr Nanoseconds kPerSecond = 1'000'000'000;
+  std::string decimals = std::to_string(stamp % kPerSecond);
   decimals.insert(0, 9 - decimals.size(), '0');
-  return std::to_string(stamp / kSecond) + '.' + decimals;
+  return std::to_string(stamp / kPerSecond) + '.' + decimals;
 }
 
 void write_now(std::ofstream& out, const std::string& text, const std::string& file) {
@@ -104,9 +105,8 @@ void write_now(std::ofstream& out, const std::string& text, const std::string& f
 /// Returns 0 if the text is not a count or is implausibly large.
 int whole_number(const std::string& field) {
   constexpr int kMax = 1'000'000'000;
-  std::istringstream in(field);
-  int value = 0;
-  return in >> value && value > 0 && value <= kMax ? value : 0;
+  const std::optional<double> value = text::to_number(field);
+  return value && *value > 0.0 && *value <= kMax ? static_cast<int>(*value) : 0;
 }
 
 TrialResult result_named(const std::string& name) {
@@ -271,9 +271,8 @@ SessionFolder::SessionFolder(const std::string& folder, const SessionHeader& hea
   }
   const std::string events = open_table(kEvents, kEventColumns, events_);
   for (const auto& row : rows_in(events_.file, kEventColumns, events)) {
-    std::istringstream time(row[0]);
-    time.imbue(std::locale::classic());
-    if (double seconds = 0.0; time >> seconds) last_time_ = std::max(last_time_, seconds);
+    const double time = text::to_number(row[0]).value_or(0.0);
+    if (std::isfinite(time)) last_time_ = std::max(last_time_, time);
     last_trial_ = std::max(last_trial_, whole_number(row[1]));
   }
 }

@@ -82,31 +82,31 @@ std::string string(const Element& element) {
 }
 
 std::string choice(const Element& element, const std::string& one, const std::string& other) {
-  const std::string given = string(element);
-  if (given != one && given != other) element.refuse(one + " or " + other);
-  return given;
+  const std::string value = string(element);
+  if (value != one && value != other) element.refuse(one + " or " + other);
+  return value;
 }
 
 /// See is_name().
 std::string name(const Element& element) {
-  const std::string given = string(element);
-  if (!is_name(given)) element.refuse(std::string("a name of ") + kNameIs);
-  return given;
+  const std::string value = string(element);
+  if (!is_name(value)) element.refuse(std::string("a name of ") + kNameIs);
+  return value;
 }
 
 Vector3 unit_vector(const Element& element) {
-  const Vector3 given = read_vector(element);
-  if (given.norm() < 1e-6) element.refuse("a direction [x, y, z]");
-  return given.normalized();
+  const Vector3 value = read_vector(element);
+  if (value.norm() < 1e-6) element.refuse("a direction [x, y, z]");
+  return value.normalized();
 }
 
 Quaternion quaternion(const Element& element) {
-  constexpr double kSlack = 0.01;
+  constexpr double kLengthTolerance = 0.01;
   const char* const allowed = "a unit quaternion [x, y, z, w]";
-  const auto given = yaml_numbers(element.node, 4);
-  if (!given) element.refuse(allowed);
-  const Eigen::Vector4d numbers(given->data());
-  if (std::abs(numbers.norm() - 1.0) > kSlack) element.refuse(allowed);
+  const auto value = yaml_numbers(element.node, 4);
+  if (!value) element.refuse(allowed);
+  const Eigen::Vector4d numbers(value->data());
+  if (std::abs(numbers.norm() - 1.0) > kLengthTolerance) element.refuse(allowed);
   return Quaternion(numbers.normalized());
 }
 
@@ -119,12 +119,12 @@ void check_has(const Element& element, const std::vector<std::string>& needed) {
 constexpr Range kJointPlace{-1e3, 1e3};
 
 void speed_range(const Element& element, Goal& goal) {
-  const auto given = yaml_numbers(element.node, 2);
-  if (!given || given->front() < 0.0 || given->front() >= given->back() ||
-      !kAboveZero.contains(given->back()))
+  const auto value = yaml_numbers(element.node, 2);
+  if (!value || value->front() < 0.0 || value->front() >= value->back() ||
+      !kAboveZero.contains(value->back()))
     element.refuse("[slowest, fastest] in m/s, slowest at least 0 and below fastest");
-  goal.min_speed = given->front();
-  goal.max_speed = given->back();
+  goal.min_speed = value->front();
+  goal.max_speed = value->back();
 }
 
 Vector3 box_size(const Element& element) {
@@ -272,9 +272,9 @@ void check_order(const Element& element, const std::vector<Goal>& goals) {
 
 /// "thing.urdf" beside the task's file, or a shipped scene's name.
 std::string body_file(const Element& element) {
-  const std::string given = string(element);
-  const std::filesystem::path path(given);
-  if (path.extension() != ".urdf" || path.is_absolute()) return given;
+  const std::string value = string(element);
+  const std::filesystem::path path(value);
+  if (path.extension() != ".urdf" || path.is_absolute()) return value;
   return (std::filesystem::path(element.file).parent_path() / path).string();
 }
 

@@ -104,7 +104,7 @@ void Trial::update(const Observation& seen) {
   before_ = elapsed_;
   elapsed_ += passed;
   counting_ = true;
-  if (!let_go_) stage_elapsed_[static_cast<std::size_t>(stage())] += passed;
+  if (!released_) stage_elapsed_[static_cast<std::size_t>(stage())] += passed;
   if (!last_) {
     start_ = seen.pose.position;
     add(TrialEventKind::begun);
@@ -119,7 +119,7 @@ void Trial::update(const Observation& seen) {
   } else {
     hold(seen, passed);
   }
-  if (!let_go_ && result_ == TrialResult::none && elapsed_ >= nanoseconds(task_->time_out))
+  if (!released_ && result_ == TrialResult::none && elapsed_ >= nanoseconds(task_->time_out))
     finish(TrialResult::timed_out);
   last_ = seen;
 }
@@ -144,18 +144,18 @@ void Trial::measure(const Observation& seen, Nanoseconds passed) {
 /// A grasp that breaks off and is there again at once has lost nothing.
 void Trial::note_grasp(const Observation& seen) {
   const bool held_before = last_ && last_->held;
-  if (!requires_grasp(current_goal().kind)) loose_.reset();
+  if (!requires_grasp(current_goal().kind)) ungrasped_since_.reset();
   if (seen.held) {
-    if (!held_before && !loose_) {
+    if (!held_before && !ungrasped_since_) {
       add(TrialEventKind::grasped);
       measures_.attempts += !requires_touch(current_goal().kind);
     }
-    loose_.reset();
+    ungrasped_since_.reset();
   } else if (held_before && requires_grasp(current_goal().kind)) {
-    loose_ = elapsed_;
+    ungrasped_since_ = elapsed_;
   }
-  if (!loose_ || (elapsed_ - *loose_ < kDropTime && !seen.put_back)) return;
-  loose_.reset();
+  if (!ungrasped_since_ || (elapsed_ - *ungrasped_since_ < kDropTime && !seen.put_back)) return;
+  ungrasped_since_.reset();
   add(TrialEventKind::dropped);
   note_drop();
 }
@@ -216,19 +216,19 @@ void Trial::note_drop() {
 
 void Trial::release(const Observation& seen) {
   if (seen.held) {
-    if (let_go_) stage_elapsed_[static_cast<std::size_t>(stage())] += elapsed_ - let_go_->elapsed;
-    let_go_.reset();  // taken again: it was not released
+    if (released_) stage_elapsed_[static_cast<std::size_t>(stage())] += elapsed_ - released_->elapsed;
+    released_.reset();  // taken again: it was not released
     return;
   }
   const Nanoseconds drift_time = nanoseconds(current_goal().drift_time);
-  if (!let_go_) {
+  if (!released_) {
     add(TrialEventKind::released);
-    let_go_ = LettingGo{elapsed_, seen.pose.position};
+    released_ = ReleaseStart{elapsed_, seen.pose.position};
     measures_.release_speed = seen.twist.linear.norm();
-  } else if (seen.put_back || elapsed_ - let_go_->elapsed >= drift_time) {
+  } else if (seen.put_back || elapsed_ - released_->elapsed >= drift_time) {
     const Vector3 end =
-        seen.put_back ? last_->pose.position : position_at(let_go_->elapsed + drift_time, seen);
-    measures_.release_drift = (end - let_go_->position).norm();
+        seen.put_back ? last_->pose.position : position_at(released_->elapsed + drift_time, seen);
+    measures_.release_drift = (end - released_->position).norm();
     achieve();
   }
 }
@@ -258,7 +258,7 @@ void Trial::end(TrialResult result) {
 
 void Trial::finish(TrialResult result) {
   result_ = result;
-  measures_.completion_time = to_seconds(let_go_ ? let_go_->elapsed : elapsed_);
+  measures_.completion_time = to_seconds(released_ ? released_->elapsed : elapsed_);
   for (std::size_t i = 0; i <= static_cast<std::size_t>(stage()); ++i) {
     const bool has = std::any_of(task_->goals.begin(), task_->goals.end(),
                                  [i](const Goal& goal) { return static_cast<std::size_t>(goal.stage) == i; });
@@ -270,8 +270,8 @@ void Trial::finish(TrialResult result) {
 
 double Trial::progress() const {
   if (result_ == TrialResult::completed) return 1.0;
-  const double asked = timed();
-  return asked > 0.0 ? 1.0 - remaining() / asked : 0.0;
+  const double duration = timed();
+  return duration > 0.0 ? 1.0 - remaining() / duration : 0.0;
 }
 
 double Trial::timed() const {
@@ -280,7 +280,7 @@ double Trial::timed() const {
 
 double Trial::remaining() const {
   if (result_ == TrialResult::completed) return 0.0;
-  return std::max(0.0, timed() - to_seconds(let_go_ ? elapsed_ - let_go_->elapsed : timer_));
+  return std::max(0.0, timed() - to_seconds(released_ ? elapsed_ - released_->elapsed : timer_));
 }
 
 void Trial::add(TrialEventKind kind, double detail) {
@@ -300,13 +300,13 @@ Observation observe(const Simulation& simulation, std::size_t body) {
   };
   seen.held = std::any_of(parts.begin(), parts.end(),
                           [&](std::size_t part) { return is_held(part, simulation.state()); });
-  double pressing = 0.0;
+  double normal_force = 0.0;
   for (const Contact& contact : result.contacts) {
     if (!is_part(contact.key.body)) continue;
     seen.touched = true;
-    pressing += std::max(0.0, -contact.normal.dot(contact.force));
+    normal_force += std::max(0.0, -contact.normal.dot(contact.force));
   }
-  seen.grip_force = 0.5 * pressing;
+  seen.grip_force = 0.5 * normal_force;
   if (const std::vector<Operator>& operators = simulation.scene().operators; !operators.empty()) {
     const auto b = static_cast<std::size_t>(operators.front().body);
     const BodyState& person = simulation.state().bodies[b];

@@ -8,7 +8,7 @@
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "synthetic/motions.h"
-#include "synthetic/operator.h"
+#include "synthetic/person.h"
 #include "training/operator_trial.h"
 
 namespace mrhi::testing {

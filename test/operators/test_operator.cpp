@@ -118,7 +118,7 @@ TEST(Operator, turns_its_hand_over_when_what_it_has_let_go_clings_to_it) {
   for (int i = 0; i < 100; ++i) run.person.move(run.time += kFrame, run.sight);
   EXPECT_EQ(run.person.phase(), Phase::done);
   run.sight.held = true;
-  run.goes_on_until(Phase::letting_go);
+  run.goes_on_until(Phase::releasing);
   EXPECT_NEAR(let_go.angularDistance(run.goes_on_until(Phase::done)), 2.0 * M_PI / 3.0, 1e-6);
 }
 

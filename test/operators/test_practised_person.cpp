@@ -1,5 +1,5 @@
 #include "operators_at_work.h"
-#include "synthetic/operator.h"
+#include "synthetic/person.h"
 
 namespace mrhi {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "mr_hand_interaction/response/contact_model.h"
-#include "rendering/mass_lag.h"
+#include "rendering/renderer.h"
 #include "simulation/state_bytes.h"
 #include "support/pinch_scene.h"
 

@@ -14,7 +14,7 @@ TEST(FingertipReach, reaches_wherever_the_finger_can_be) {
     const FingerAngles lower = bones(finger).lower, range = bones(finger).upper - lower;
     for (double share : {0.3, 0.5, 0.7}) {
       const Vector3 target = finger_joints(bones(finger), lower + share * range)[4];
-      const Reach result = reach(bones(finger), target, relaxed_posture().col(finger));
+      const FingerSolution result = solve_finger(bones(finger), target, relaxed_posture().col(finger));
       // The damping leaves an error that shrinks with every iteration; a micrometre is far below any tracker.
       EXPECT_LT(result.error, 1e-6) << "finger " << finger << ", share " << share;
     }
@@ -23,7 +23,7 @@ TEST(FingertipReach, reaches_wherever_the_finger_can_be) {
 
 TEST(FingertipReach, keeps_to_the_limits_and_says_how_far_it_is_off) {
   const Vector3 too_far(0.5, 0.0, 0.0);
-  const Reach result = reach(bones(1), too_far, relaxed_posture().col(1));
+  const FingerSolution result = solve_finger(bones(1), too_far, relaxed_posture().col(1));
   EXPECT_TRUE((result.angles.array() <= bones(1).upper.array()).all());
   EXPECT_TRUE((result.angles.array() >= bones(1).lower.array()).all());
   EXPECT_NEAR(result.error, (too_far - finger_joints(bones(1), result.angles)[4]).norm(), 1e-12);
@@ -32,7 +32,7 @@ TEST(FingertipReach, keeps_to_the_limits_and_says_how_far_it_is_off) {
 
 TEST(FingertipReach, changes_nothing_where_the_preferred_posture_already_reaches) {
   const FingerAngles preferred = relaxed_posture().col(2);
-  const Reach result = reach(bones(2), finger_joints(bones(2), preferred)[4], preferred);
+  const FingerSolution result = solve_finger(bones(2), finger_joints(bones(2), preferred)[4], preferred);
   EXPECT_LT((result.angles - preferred).norm(), 1e-9);  // rounding
 }
 

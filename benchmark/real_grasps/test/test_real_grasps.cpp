@@ -94,16 +94,16 @@ TEST(Clearance, IsTheDistanceOfTheSkinFromTheBody) {
 struct Told {
   Recording recording = two_tips(3.0, closing_once(1.0, 2.0, 0.03));
   Closing closing = closings(recording, kCube).at(0);
-  Story story;
+  Playback playback;
 
   explicit Told(double place) {
     for (int i = 90; i < 240; ++i)
-      story.moments.push_back({i * kPeriod, Vector3(0, place, 0), Vector3::Zero(), i > 100 && i < 210});
-    story.has_grasps = true;
-    story.grasp_began = 1.0;
-    story.grasp_ended = 2.1;
+      playback.moments.push_back({i * kPeriod, Vector3(0, place, 0), Vector3::Zero(), i > 100 && i < 210});
+    playback.has_grasps = true;
+    playback.grasp_began = 1.0;
+    playback.grasp_ended = 2.1;
   }
-  Outcome outcome() const { return outcome_of(story, recording.tracks[0], closing, kCube); }
+  Outcome outcome() const { return outcome_of(playback, recording.tracks[0], closing, kCube); }
 };
 
 TEST(Held, IsWhatIsGraspedAndInTheHandUntilItOpens) {
@@ -114,29 +114,29 @@ TEST(Held, IsWhatIsGraspedAndInTheHandUntilItOpens) {
 
 TEST(Held, NotWhatIsNeverGraspedOrLetGoTooEarly) {
   Told told(0.0);
-  told.story.grasp_ended = told.closing.opens - 0.05;
+  told.playback.grasp_ended = told.closing.opens - 0.05;
   EXPECT_TRUE(told.outcome().held) << "within the time that a grasp may end before the hand opens";
-  told.story.grasp_ended = told.closing.opens - 0.07;
+  told.playback.grasp_ended = told.closing.opens - 0.07;
   EXPECT_FALSE(told.outcome().held);
-  told.story.grasp_ended.reset();
-  told.story.grasp_began.reset();
+  told.playback.grasp_ended.reset();
+  told.playback.grasp_began.reset();
   EXPECT_FALSE(told.outcome().held);
   EXPECT_TRUE(told.outcome().carried);
-  told.story.has_grasps = false;
+  told.playback.has_grasps = false;
   EXPECT_TRUE(told.outcome().held) << "by an engine that does not know grasps";
 }
 
 TEST(Held, CarriedIsNotWhatNothingPresses) {
   Told told(0.0);
-  for (Moment& moment : told.story.moments) moment.pressed = false;
+  for (Moment& moment : told.playback.moments) moment.loaded = false;
   EXPECT_FALSE(told.outcome().carried);
 }
 
 TEST(Held, NudgedAndReleasedAreTold) {
   const Outcome outcome = Told(0.012).outcome();
   EXPECT_NEAR(outcome.early, 0.012, 1e-12);
-  ASSERT_TRUE(outcome.let_go);
-  EXPECT_NEAR(*outcome.let_go, 2.1, 1e-6);
+  ASSERT_TRUE(outcome.released);
+  EXPECT_NEAR(*outcome.released, 2.1, 1e-6);
 }
 
 /// A scripted hand that grasps a cube of 40 mm, applied to one of 44 mm, which its tips penetrate by 2 mm.
@@ -193,7 +193,7 @@ TEST(Disturbed, IsEvenlySpacedAsNoisyAsSaidAndTheSameForOneSeed) {
 }
 
 /// First action on the scene's cube in a scripted hand's path, or on one displaced by `aside` [m].
-std::optional<FirstBlow> blow_of(const std::string& motion, double aside = 0.0) {
+std::optional<FirstMotion> first_motion_of(const std::string& motion, double aside = 0.0) {
   SyntheticHandOptions options;
   options.motion = motion;
   SyntheticHand hand(options);
@@ -210,18 +210,18 @@ std::optional<FirstBlow> blow_of(const std::string& motion, double aside = 0.0) 
     if (!frame || simulation.advance(*frame) != Rejection::none) continue;
     const double time = to_seconds(simulation.result().stamp);
     if (before > 0.0)
-      if (const auto blow = first_blow(simulation, 0, time - before)) return blow;
+      if (const auto first = first_motion(simulation, 0, time - before)) return first;
     before = time;
   }
   return std::nullopt;
 }
 
-TEST(FirstBlow, IsToldByWhatTheHandDid) {
-  ASSERT_TRUE(blow_of("slap"));
-  EXPECT_EQ(blow_of("slap")->blow, Blow::sweep);
-  ASSERT_TRUE(blow_of("tap"));
-  EXPECT_EQ(blow_of("tap")->blow, Blow::closing);
-  EXPECT_FALSE(blow_of("slap", 1.0));
+TEST(FirstMotion, IsToldByWhatTheHandDid) {
+  ASSERT_TRUE(first_motion_of("slap"));
+  EXPECT_EQ(first_motion_of("slap")->cause, MotionCause::sweep);
+  ASSERT_TRUE(first_motion_of("tap"));
+  EXPECT_EQ(first_motion_of("tap")->cause, MotionCause::closing);
+  EXPECT_FALSE(first_motion_of("slap", 1.0));
 }
 
 TEST(Statistics, WilsonsIntervalIsThatOfTables) {
@@ -241,8 +241,8 @@ TEST(Statistics, AQuantileLiesBetweenItsNeighbours) {
 
 // Trials of one group with equal outcomes count as one trial for an interval.
 TEST(Statistics, AnIntervalByGroupsIsWiderWhereTheirTrialsDependOnEachOther) {
-  const std::vector<Share> apart(40, {0, 1});
-  std::vector<Share> even = apart, clustered;
+  const std::vector<SuccessCount> apart(40, {0, 1});
+  std::vector<SuccessCount> even = apart, clustered;
   for (std::size_t i = 0; i < even.size(); i += 2) even[i].successes = 1;
   for (int i = 0; i < 4; ++i) clustered.push_back({i % 2 == 0 ? 10u : 0u, 10u});
   const Interval independent = grouped(even), dependent = grouped(clustered), single = wilson(20, 40);
@@ -347,14 +347,14 @@ TEST(Arctic, AWindowIsLedFromWhereNoHandTouchesItsObject) {
 
 TEST(Arctic, AHingeThatIsElsewhereIsNotWithin) {
   const std::vector<WindowOutcome> outcomes{{{0.01, 0.01}, {0.1, 0.3}, {}, {}}};
-  EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02), 1.0);
-  EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02, 0.2), 0.5);
+  EXPECT_DOUBLE_EQ(fraction_within(outcomes, 0.02), 1.0);
+  EXPECT_DOUBLE_EQ(fraction_within(outcomes, 0.02, 0.2), 0.5);
 }
 
 TEST(Arctic, SharesAreOfAllFramesTogether) {
   const std::vector<WindowOutcome> outcomes{{{0.01, 0.03, 0.06}, {}, {1.0}, {}}, {{0.0}, {}, {2.0, 3.0}, {}}};
-  EXPECT_DOUBLE_EQ(share_within(outcomes, 0.05), 0.75);
-  EXPECT_DOUBLE_EQ(share_within(outcomes, 0.02), 0.5);
+  EXPECT_DOUBLE_EQ(fraction_within(outcomes, 0.05), 0.75);
+  EXPECT_DOUBLE_EQ(fraction_within(outcomes, 0.02), 0.5);
   EXPECT_EQ(stayed(outcomes, 0.05), 1u);
   EXPECT_DOUBLE_EQ(force_p90(outcomes), 2.8);
 }
@@ -370,10 +370,10 @@ WindowOutcome near_in(const std::string& capture, std::size_t within) {
 // The frames of a capture depend on each other: only captures are drawn anew.
 TEST(Arctic, IntervalsAreOfCaptures) {
   const std::vector<WindowOutcome> one_capture{near_in("a", 10), near_in("a", 0)};
-  const Interval none = share_interval(one_capture, 0.02);
+  const Interval none = fraction_interval(one_capture, 0.02);
   EXPECT_DOUBLE_EQ(none.low, 0.5);
   EXPECT_DOUBLE_EQ(none.high, 0.5);
-  const Interval of_two = share_interval({near_in("a", 10), near_in("b", 0)}, 0.02);
+  const Interval of_two = fraction_interval({near_in("a", 10), near_in("b", 0)}, 0.02);
   EXPECT_DOUBLE_EQ(of_two.low, 0.0);
   EXPECT_DOUBLE_EQ(of_two.high, 1.0);
 }
@@ -393,8 +393,8 @@ TEST(Arctic, WindowsAreCountedByPersonAndObject) {
   outcomes[1].labels.person = "P2";
   const auto people = by_label(outcomes, &WindowLabels::person);
   ASSERT_EQ(people.size(), 2u);
-  EXPECT_DOUBLE_EQ(share_within(people.at("P1"), 0.02), 0.5);
-  EXPECT_DOUBLE_EQ(share_within(people.at("P2"), 0.02), 0.5);
+  EXPECT_DOUBLE_EQ(fraction_within(people.at("P1"), 0.02), 0.5);
+  EXPECT_DOUBLE_EQ(fraction_within(people.at("P2"), 0.02), 0.5);
 }
 
 }  // namespace

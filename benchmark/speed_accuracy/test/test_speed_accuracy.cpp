@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "../contender.h"
-#include "../results.h"
 
 namespace mrhi::benchmark {
 namespace {

@@ -187,7 +187,7 @@ class Session {
   const Planned& planned() const;
   bool active() const { return phase_ == SessionPhase::running || phase_ == SessionPhase::paused; }
   void end(TrialResult result, Nanoseconds now);
-  void go_on_from(std::size_t position);
+  void advance_to(std::size_t position);
   void log_trial_events();
   void log_event(const char* event, Nanoseconds now, const std::string& detail = "");
   void log(EventRow row);

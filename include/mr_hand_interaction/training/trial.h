@@ -109,7 +109,7 @@ class Trial {
   const std::vector<TrialEvent>& events() const { return events_; }
 
  private:
-  struct LettingGo {
+  struct ReleaseStart {
     Nanoseconds elapsed;
     Vector3 position;
   };
@@ -144,9 +144,9 @@ class Trial {
   bool arrived_ = false;   ///< rest: within its tolerance once
   bool touching_ = false;  ///< now or shortly before
   Nanoseconds timer_ = 0, untouched_ = 0, gripped_ = 0;
-  double grip_impulse_ = 0.0;         ///< over gripped_ [N s]
-  std::optional<Nanoseconds> loose_;  ///< not held since, although it should be
-  std::optional<LettingGo> let_go_;
+  double grip_impulse_ = 0.0;                   ///< over gripped_ [N s]
+  std::optional<Nanoseconds> ungrasped_since_;  ///< not held since, although it should be
+  std::optional<ReleaseStart> released_;
   TrialMeasures measures_;
   std::vector<TrialEvent> events_;
 };

@@ -307,7 +307,7 @@ class SkinObject {
             const SkinTone& tone, bool glassy, const Vector3& eye) {
     object_->setVisible(skin_.pose(rendered.hand, surface_));
     if (!object_->isVisible()) return;
-    press_flat(result.contacts, state, rendered.hand.id, skin_, surface_);
+    flatten_pads(result.contacts, state, rendered.hand.id, skin_, surface_);
     paint_skin(skin_, rendered, surface_, colours_, tone);
     for (std::size_t v = 0; v < colours_.size(); ++v) {
       const Eigen::Vector3f to_eye = (eye - surface_.vertices[v]).cast<float>().normalized();

@@ -72,10 +72,17 @@ struct Sight {
   double size = 1.0;                  ///< of the object as shown, relative to its body
 };
 
+constexpr double kMaxObjectSpeed = 0.1;  ///< faster objects are not grasped [m/s]
+constexpr double kCorrectionRate = 2.0;  ///< of an error that is seen [1/s]
+
+/// Pose of an object after `seconds` at its present velocity.
+Pose expected(const Pose& pose, const Twist& twist, double seconds);
+
 /// A program in the role of a participant, which moves a hand by what it sees.
 class Person {
  public:
-  Person() = default;
+  Person(const OperatorSkill& skill, std::uint64_t seed)
+      : skill_(skill), random_(seed), tremor_(skill.tremor, random_) {}
   Person(const Person&) = delete;
   Person& operator=(const Person&) = delete;
   virtual ~Person() = default;
@@ -83,6 +90,24 @@ class Person {
   virtual HandPlace move(double time, const Sight& sight) = 0;
   /// The left hand at the last move(), if it takes part: its wrist's frame is mirrored as in hand_joints().
   virtual std::optional<HandPlace> left_hand() const { return std::nullopt; }
+
+ protected:
+  /// What is seen and felt at one time, with the wrist's pose and the depth of the grip.
+  struct Moment {
+    double time;
+    Sight sight;
+    Pose wrist = {};
+    double depth = 0.0;
+  };
+  /// Stores the present moment. past_ then begins with the latest one that is a reaction time ago; false if
+  /// there is none yet.
+  bool remember(const Moment& now);
+  double paced(double seconds) const { return skill_.pace * seconds; }
+
+  OperatorSkill skill_;
+  Random random_;
+  Tremor tremor_;
+  std::deque<Moment> past_;
 };
 
 /// Practised motions besides taking, carrying and releasing. `open_hatch` opens the latches first;
@@ -122,21 +147,14 @@ class PractisedPerson : public Person {
   HandPlace move(double time, const Sight& sight) override;
 
  private:
-  struct Moment {
-    double time;
-    Sight sight;
-  };
   void look(double time, const Moment& seen);
   std::vector<Keyframe> motion(const PractisedGoal& goal, const Moment& seen, double& begin) const;
   bool ready(const PractisedGoal& goal, const Sight& sight) const;
 
-  OperatorSkill skill_;
   std::vector<std::optional<PractisedGoal>> goals_;
   Body object_;
-  Random random_;
-  Tremor tremor_;
   std::optional<Moment> looked_;  ///< a look at the object, acted on a reaction time later
-  std::vector<Keyframe> way_;
+  std::vector<Keyframe> keyframes_;
   double began_ = 0.0;
   HandPlace now_;
 };
@@ -147,7 +165,7 @@ class PractisedPerson : public Person {
 /// the expected load. A right hand; the same seed and sights give the same bits.
 class SimulatedOperator : public Person {
  public:
-  enum class Phase : std::uint8_t { watching, reaching, grasping, carrying, letting_go, withdrawing, done };
+  enum class Phase : std::uint8_t { watching, reaching, grasping, carrying, releasing, withdrawing, done };
 
   /// Grasps the object by grasp_of(). Throws as that does.
   SimulatedOperator(const OperatorSkill& skill, const Body& object, std::uint64_t seed);
@@ -157,65 +175,54 @@ class SimulatedOperator : public Person {
   Phase phase() const { return phase_; }
 
  private:
-  struct Moment {
-    double time;
-    Sight sight;
-    Pose wrist;
-    double depth;
-  };
   void decide(double time, const Moment& seen);
   void watch(double time, const Moment& seen);
   void reach(double time, const Moment& seen);
   void grasp(double time, const Moment& seen);
   void carry(const Moment& seen);
   void follow_up(double time, const Moment& seen);
-  void let_go();
+  void release();
   void shake_off();
-  void lose();
+  void withdraw();
   void prepare_grasp(double size);
   void fit_to(double size);
   void replan_fingers(double size);
   void correct(double since, const Moment& seen);
-  void squeeze(double time, double since);
+  void control_grip(double time, double since);
   const Moment& before(double time, double delay) const;
   HandPlace planned(double time) const;
-  Vector3 swung(double time) const;
+  Vector3 oscillation(double time) const;
   Vector3 acceleration(double time) const;
   Pose wrist_about(const Pose& object);
   void plan(Phase phase, const Moment& seen, const Vector3& drift = Vector3::Zero());
-  void then(double duration, const Pose& wrist, const HandPosture& posture);
   void close_to(double depth, double duration);
   bool arrived(double time) const {
-    return time >= began_ + (fingers_.empty() ? way_ : fingers_).back().time;
+    return time >= began_ + (fingers_.empty() ? keyframes_ : fingers_).back().time;
   }
   bool is_astray(const Moment& seen) const;
   double distance_from_grip(const Moment& seen) const;
   double movement_time(double distance, double width) const;
 
-  OperatorSkill skill_;
-  Grasp usual_;                    ///< of the object in its shipped scene
-  std::vector<Quaternion> turns_;  ///< symmetries of the object
-  Random random_;
-  Tremor tremor_;
+  Grasp usual_;                         ///< of the object in its shipped scene
+  std::vector<Quaternion> symmetries_;  ///< of the object
   double mass_, friction_;
   double firmness_ = 1.0;  ///< grip factor, increased after a loss
 
   Grasp grasp_;        ///< of the next or present take, for an object of size 1
   double size_ = 1.0;  ///< of the object, for which the postures are
   std::optional<GripPostures> postures_;
-  std::optional<double> gripping_;      ///< time since which force leads the fingers [s]
-  double depth_ = 0.0, wanted_ = 0.0;   ///< of the squeeze, present [m] and wanted [N]
-  double stiffness_;                    ///< learned stiffness of the grip [N/m]
-  Pose misplaced_;                      ///< error of the grasp, in the object's frame
-  Vector3 beside_ = Vector3::Zero();    ///< its displacement, in world
-  Vector3 middle_ = Vector3::Zero();    ///< position of the object in the wrist's frame, as seen
-  Vector3 retreat_ = Vector3::UnitZ();  ///< in world
-  Vector3 in_hand_ = Vector3::Zero();   ///< wanted position of the object in the wrist's frame
+  std::optional<double> grip_began_;          ///< time since which force leads the fingers [s]
+  double depth_ = 0.0, target_force_ = 0.0;   ///< of the grip: present depth [m]; target [N]
+  double stiffness_;                          ///< learned stiffness of the grip [N/m]
+  Pose grasp_error_;                          ///< error of the grasp, in the object's frame
+  Vector3 error_in_world_ = Vector3::Zero();  ///< its displacement, in world
+  Vector3 seen_in_wrist_ = Vector3::Zero();   ///< position of the object in the wrist's frame, as seen
+  Vector3 retreat_ = Vector3::UnitZ();        ///< in world
+  Vector3 in_hand_ = Vector3::Zero();         ///< wanted position of the object in the wrist's frame
 
   Phase phase_ = Phase::watching;
-  std::deque<Moment> past_;  ///< sights within the reaction time
-  double began_ = 0.0;       ///< start of the movement [s]
-  std::vector<Keyframe> way_;
+  double began_ = 0.0;  ///< start of the movement [s]
+  std::vector<Keyframe> keyframes_;
   std::vector<Keyframe> fingers_;        ///< postures alone, where their times differ from the wrist's
   Vector3 drift_ = Vector3::Zero();      ///< of the whole path, with a drifting object [m/s]
   Vector3 bow_ = Vector3::Zero();        ///< of the path to the object, which ends when the hand leaves it

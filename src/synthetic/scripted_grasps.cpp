@@ -18,7 +18,7 @@ Vector3 tip(const FingerSkeleton& finger, const FingerAngles& angles) {
   return finger_joints(finger, angles)[4];
 }
 
-/// Central differences; a joint that cannot move (no range, or pressed against its limit) has no column.
+/// Central differences; a joint that cannot move (no range, or at its limit) has no column.
 Jacobian tip_jacobian(const FingerSkeleton& finger, const FingerAngles& angles, const Vector3& error) {
   constexpr double kStep = 1e-5;
   Jacobian jacobian = Jacobian::Zero();
@@ -28,22 +28,22 @@ Jacobian tip_jacobian(const FingerSkeleton& finger, const FingerAngles& angles, 
     ahead[joint] += kStep;
     behind[joint] -= kStep;
     const Vector3 column = (tip(finger, ahead) - tip(finger, behind)) / (2.0 * kStep);
-    const double wish = column.dot(error);
-    const bool stuck = (angles[joint] >= finger.upper[joint] && wish > 0.0) ||
-                       (angles[joint] <= finger.lower[joint] && wish < 0.0);
-    if (!stuck) jacobian.col(joint) = column;
+    const double closing_rate = column.dot(error);
+    const bool at_limit = (angles[joint] >= finger.upper[joint] && closing_rate > 0.0) ||
+                          (angles[joint] <= finger.lower[joint] && closing_rate < 0.0);
+    if (!at_limit) jacobian.col(joint) = column;
   }
   return jacobian;
 }
 
-constexpr double kNearly =
+constexpr double kSlowClosingGap =
     0.003;  // mean gap from which the fingers close slowly, so that they touch gently [m]
-constexpr double kArrived = 0.0015;  // mean gap at which the fingers of a grip have arrived [m]
-constexpr int kSteps = 5;            // of a grip's depth
+constexpr double kClosedGap = 0.0015;  // mean gap at which the fingers of a grip have arrived [m]
+constexpr int kGripSteps = 5;          // of a grip's depth
 
-/// All tips at `share` of their depths; below 0 they are off the surface.
-HandPosture pressed(Grasp grasp, double share) {
-  for (FingertipContact& contact : grasp.contacts) contact.depth *= share;
+/// All tips at `fraction` of their depths; below 0 they are off the surface.
+HandPosture posture_at(Grasp grasp, double fraction) {
+  for (FingertipContact& contact : grasp.contacts) contact.depth *= fraction;
   return grasp.posture(-1.0);
 }
 
@@ -113,8 +113,8 @@ const std::vector<GraspEntry>& shipped_grasps() {
 
 }  // namespace
 
-Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAngles& preferred,
-            int iterations) {
+FingerSolution solve_finger(const FingerSkeleton& finger, const Vector3& target,
+                            const FingerAngles& preferred, int iterations) {
   constexpr double kDamping = 2e-3;     // [m]
   constexpr double kLongestStep = 0.2;  // [rad]
   constexpr double kPreferenceGain = 0.2;
@@ -124,7 +124,7 @@ Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAng
     const Jacobian jacobian = tip_jacobian(finger, angles, error);
     const Matrix3 damped = jacobian * jacobian.transpose() + kDamping * kDamping * Matrix3::Identity();
     const Eigen::Matrix<double, kFingerJoints, 3> inverse = jacobian.transpose() * damped.inverse();
-    // The wish for the preferred posture fades so that the last iterations are for the target alone.
+    // The pull to the preferred posture fades so that the last iterations are for the target alone.
     const double gain = i < iterations / 2 ? kPreferenceGain : 0.0;
     FingerAngles change =
         inverse * error + (JointMatrix::Identity() - inverse * jacobian) * (gain * (preferred - angles));
@@ -138,17 +138,17 @@ Reach reach(const FingerSkeleton& finger, const Vector3& target, const FingerAng
   return {angles, (target - tip(finger, angles)).norm()};
 }
 
-Reach Grasp::reach_contact(const FingertipContact& contact, double gap, int iterations) const {
+FingerSolution Grasp::solve_contact(const FingertipContact& contact, double gap, int iterations) const {
   const FingerSkeleton& finger = human_hand().fingers[contact.finger];
   const double height = finger.radius + (gap < 0.0 ? -contact.depth : gap);
   const Vector3 target = wrist.to_local(contact.point + height * contact.normal);
-  return reach(finger, target, preferred.col(contact.finger), iterations);
+  return solve_finger(finger, target, preferred.col(contact.finger), iterations);
 }
 
 HandPosture Grasp::posture(double gap) const {
   HandPosture posture = within_limits(human_hand(), preferred);
   for (const FingertipContact& contact : contacts)
-    posture.col(contact.finger) = reach_contact(contact, gap).angles;
+    posture.col(contact.finger) = solve_contact(contact, gap).angles;
   return posture;
 }
 
@@ -168,10 +168,10 @@ GraspPostures::GraspPostures(const Grasp& grasp) {
   for (const FingertipContact& contact : grasp.contacts) mean_depth += contact.depth;
   mean_depth /= static_cast<double>(grasp.contacts.size());
   open = grasp.posture(grasp.opening);
-  near = pressed(grasp, -kNearly / mean_depth);
-  touching = pressed(grasp, 0.0);
-  pressing = pressed(grasp, 1.0);
-  touching_share = kNearly / (kNearly + mean_depth);
+  near = posture_at(grasp, -kSlowClosingGap / mean_depth);
+  touching = posture_at(grasp, 0.0);
+  closed = posture_at(grasp, 1.0);
+  touching_fraction = kSlowClosingGap / (kSlowClosingGap + mean_depth);
 }
 
 Grasp grasp_of(const Body& body) {
@@ -186,23 +186,23 @@ Grasp shipped_grasp(const std::string& object) {
 }
 
 GripPostures::GripPostures(const Grasp& grasp, double deepest) : deepest_(deepest) {
-  double mean_share = 0.0;
+  double mean_fraction = 0.0;
   for (const FingertipContact& contact : grasp.contacts)
-    mean_share += contact.depth / static_cast<double>(grasp.contacts.size());
-  near_depth = -kArrived / mean_share;
+    mean_fraction += contact.depth / static_cast<double>(grasp.contacts.size());
+  near_depth = -kClosedGap / mean_fraction;
   open = grasp.posture(grasp.opening);
-  near = pressed(grasp, near_depth);
-  for (int i = 0; i < kSteps; ++i) pressed_.push_back(pressed(grasp, deepest * i / (kSteps - 1)));
+  near = posture_at(grasp, near_depth);
+  for (int i = 0; i < kGripSteps; ++i) closed_.push_back(posture_at(grasp, deepest * i / (kGripSteps - 1)));
 }
 
 HandPosture GripPostures::at(double depth) const {
   if (depth < 0.0) {
-    const double share = std::min(1.0, depth / near_depth);
-    return pressed_.front() + share * (near - pressed_.front());
+    const double fraction = std::min(1.0, depth / near_depth);
+    return closed_.front() + fraction * (near - closed_.front());
   }
-  const double place = std::min(1.0, depth / deepest_) * (kSteps - 1);
-  const auto below = static_cast<std::size_t>(std::min(kSteps - 2.0, place));
-  return pressed_[below] + (place - static_cast<double>(below)) * (pressed_[below + 1] - pressed_[below]);
+  const double place = std::min(1.0, depth / deepest_) * (kGripSteps - 1);
+  const auto below = static_cast<std::size_t>(std::min(kGripSteps - 2.0, place));
+  return closed_[below] + (place - static_cast<double>(below)) * (closed_[below + 1] - closed_[below]);
 }
 
 std::vector<Quaternion> box_symmetries(const Body& body) {

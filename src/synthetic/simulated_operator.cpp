@@ -1,74 +1,63 @@
-#include "operator.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "../math/minimum_jerk.h"
 #include "../math/rotation.h"
 #include "motions.h"
+#include "person.h"
 
 namespace mrhi {
 namespace {
 
-constexpr double kApproach = 0.10;                        // straight to the object with the hand open [m]
 constexpr double kGraspWidth = 0.01, kPlaceWidth = 0.02;  // [m] for Fitts' law
 constexpr double kMinDuration = 0.3;                      // minimum of a movement [s]
-constexpr double kCatchable = 0.1;                        // faster objects are not pursued [m/s]
-constexpr double kAstray = 0.05;                          // from the object's expected position [m]
-constexpr double kOutOfHand = 0.04;                       // from the object's position in the hand [m]
-constexpr double kPatience = 10.0;                        // time at the target without an effect [s]
-constexpr double kFirmer = 1.2, kFirmest = 1.5;
-constexpr double kLoad = 0.5, kUnload = 0.7, kOpen = 0.5, kRetreat = 0.7,
-                 kGoAside = 0.8;  // times at pace 1 [s]
+constexpr double kMaxObjectOffset = 0.05;                 // from the object's expected position [m]
+constexpr double kMaxGripOffset = 0.04;                   // from the object's position in the hand [m]
+constexpr double kMaxTargetWait = 10.0;                   // time at the target without an effect [s]
+constexpr double kFirmnessFactor = 1.2, kMaxFirmness = 1.5;
+constexpr double kLoadTime = 0.5, kUnloadTime = 0.7, kOpeningTime = 0.5, kWithdrawalTime = 0.7,
+                 kReturnTime = 0.8;  // times at pace 1 [s]
 
-constexpr double kWidest = 0.61;  // fraction of the path after which the hand begins to close
-constexpr double kTouch = 0.07;   // from feeling to acting [s]
-constexpr double kSight = 0.1;  // from seeing to correcting a movement under way (Paulignan et al. 1991) [s]
-constexpr double kCorrecting = 2.0;      // rate of correcting a seen error [1/s]
-constexpr double kFastCorrection = 0.1;  // [m/s]
-constexpr double kUnseen = 0.5;          // unseen fraction of an error
-constexpr double kLearning = 0.25;       // time constant of the grip's stiffness [s]
+constexpr double kMaxApertureFraction = 0.61;  // fraction of the path after which the hand begins to close
+constexpr double kTouchDelay = 0.07;           // from feeling to acting [s]
+constexpr double kSightDelay =
+    0.1;  // from seeing to correcting a movement under way (Paulignan et al. 1991) [s]
+constexpr double kMaxCorrectionSpeed = 0.1;  // [m/s]
+constexpr double kUnseenFraction = 0.5;      // unseen fraction of an error
+constexpr double kLearningTime = 0.25;       // time constant of the grip's stiffness [s]
 constexpr double kInitialStiffness = 800.0, kMinStiffness = 20.0;  // of the grip [N/m]
-constexpr double kUnfelt = 0.15;        // of the wanted grip: below it something else holds the object
-constexpr double kClosingSpeed = 0.05;  // maximum rate of the depth [m/s]
-constexpr double kSwing = 1.0;          // [Hz]
+constexpr double kMinFeltFraction = 0.15;  // of the wanted grip: below it something else holds the object
+constexpr double kClosingSpeed = 0.05;     // maximum rate of the depth [m/s]
+constexpr double kSwingFrequency = 1.0;    // [Hz]
 
-const Vector3 kRest(0.05, -0.16, 0.02);  // where the hand waits, relative to the start of its approach [m]
-
-/// Pose of the object after `ahead` seconds at its present velocity.
-Pose expected(const Sight& sight, double ahead) {
-  return {sight.object.position + ahead * sight.twist.linear,
-          (rotation_by(ahead * sight.twist.angular) * sight.object.orientation).normalized()};
-}
+const Vector3 kRestOffset(0.05, -0.16,
+                          0.02);  // where the hand waits, relative to the start of its approach [m]
 
 }  // namespace
 
 SimulatedOperator::SimulatedOperator(const OperatorSkill& skill, const Body& object, std::uint64_t seed)
-    : skill_(skill),
+    : Person(skill, seed),
       usual_(grasp_of(object)),
-      turns_(box_symmetries(object)),
-      random_(seed),
-      tremor_(skill.tremor, random_),
+      symmetries_(box_symmetries(object)),
       mass_(object.mass),
       friction_(std::max(0.1, object.material.static_friction)),
       stiffness_(kInitialStiffness) {
   prepare_grasp(1.0);
   const Pose at = wrist_about({object.start.position, Quaternion::Identity()});
-  now_ = {shifted(at, kApproach * retreat_ + kRest), relaxed_posture()};
-  way_ = {{0.0, now_.wrist, now_.posture}};
+  now_ = {shifted(at, kApproachLength * retreat_ + kRestOffset), relaxed_posture()};
+  keyframes_ = {{0.0, now_.wrist, now_.posture}};
 }
 
 HandPlace SimulatedOperator::move(double time, const Sight& sight) {
-  past_.push_back({time, sight, now_.wrist, depth_});
-  while (past_.size() > 1 && past_[1].time <= time - skill_.reaction_time) past_.pop_front();
+  const bool has_seen = remember({time, sight, now_.wrist, depth_});
   const bool under_way = phase_ == Phase::reaching || phase_ == Phase::grasping;
-  const Moment seen = under_way ? before(time, std::min(kSight, skill_.reaction_time)) : past_.front();
-  if (past_.front().time <= time - skill_.reaction_time) decide(time, seen);
+  const Moment seen = under_way ? before(time, std::min(kSightDelay, skill_.reaction_time)) : past_.front();
+  if (has_seen) decide(time, seen);
   const double since = time - last_time_;
   correct(since, seen);
-  squeeze(time, since);
+  control_grip(time, since);
   HandPlace next = planned(time);
-  if (gripping_) next.posture = postures_->at(depth_);
+  if (grip_began_) next.posture = postures_->at(depth_);
   if (since > 0.0) {
     velocity_ = (next.wrist.position - now_.wrist.position) / since;
     rate_ = (next.posture - now_.posture) / since;
@@ -80,19 +69,22 @@ HandPlace SimulatedOperator::move(double time, const Sight& sight) {
 }
 
 HandPlace SimulatedOperator::planned(double time) const {
-  const double on_way = time - began_;
-  HandPlace place = hand_at(way_, on_way);
-  if (!fingers_.empty()) place.posture = hand_at(fingers_, on_way).posture;
-  const double share = minimum_jerk(std::clamp(on_way / std::max(way_.back().time, kMinDuration), 0.0, 1.0));
-  place.wrist.position += on_way * drift_ + 2.0 * share * (1.0 - share) * bow_ + corrected_ + swung(time);
+  const double elapsed = time - began_;
+  HandPlace place = hand_at(keyframes_, elapsed);
+  if (!fingers_.empty()) place.posture = hand_at(fingers_, elapsed).posture;
+  const double fraction =
+      minimum_jerk(std::clamp(elapsed / std::max(keyframes_.back().time, kMinDuration), 0.0, 1.0));
+  place.wrist.position +=
+      elapsed * drift_ + 2.0 * fraction * (1.0 - fraction) * bow_ + corrected_ + oscillation(time);
   return place;
 }
 
 /// Up and down about the target, from rest; with a smaller amplitude in the first second.
-Vector3 SimulatedOperator::swung(double time) const {
+Vector3 SimulatedOperator::oscillation(double time) const {
   if (!swing_began_) return Vector3::Zero();
   const double since = time - *swing_began_;
-  return 0.5 * std::sin(2.0 * M_PI * kSwing * since) * minimum_jerk(std::clamp(since, 0.0, 1.0)) * swing_;
+  return 0.5 * std::sin(2.0 * M_PI * kSwingFrequency * since) * minimum_jerk(std::clamp(since, 0.0, 1.0)) *
+         swing_;
 }
 
 Vector3 SimulatedOperator::acceleration(double time) const {
@@ -103,15 +95,16 @@ Vector3 SimulatedOperator::acceleration(double time) const {
 
 /// Observes the object between the fingers while they close, and moves the hand accordingly.
 void SimulatedOperator::correct(double since, const Moment& seen) {
-  const bool closing = phase_ == Phase::reaching && last_time_ - began_ > kWidest * way_.back().time;
+  const bool closing =
+      phase_ == Phase::reaching && last_time_ - began_ > kMaxApertureFraction * keyframes_.back().time;
   if (since <= 0.0 || !(closing || (phase_ == Phase::grasping && !arrived(last_time_)))) return;
-  Vector3 off = seen.wrist.orientation * (seen.wrist.to_local(seen.sight.object.position) - middle_);
+  Vector3 off = seen.wrist.orientation * (seen.wrist.to_local(seen.sight.object.position) - seen_in_wrist_);
   if (closing) {
-    const Vector3 where = expected(aim_.sight, seen.time - aim_.time).position;
-    off = seen.sight.object.position - where - (1.0 - kUnseen) * beside_ - corrected_;
+    const Vector3 where = expected(aim_.sight.object, aim_.sight.twist, seen.time - aim_.time).position;
+    off = seen.sight.object.position - where - (1.0 - kUnseenFraction) * error_in_world_ - corrected_;
   }
-  Vector3 speed = kCorrecting * off;
-  if (speed.norm() > kFastCorrection) speed *= kFastCorrection / speed.norm();
+  Vector3 speed = kCorrectionRate * off;
+  if (speed.norm() > kMaxCorrectionSpeed) speed *= kMaxCorrectionSpeed / speed.norm();
   corrected_ += since * speed;
 }
 
@@ -123,22 +116,24 @@ const SimulatedOperator::Moment& SimulatedOperator::before(double time, double d
 }
 
 /// Sets a grip force above the need of the coming load, and the depth for it by the learned stiffness.
-void SimulatedOperator::squeeze(double time, double since) {
-  if (!gripping_ || since <= 0.0) return;
-  const Moment& touch = before(time, kTouch);
-  const bool pressed = touch.depth > 0.0 && touch.time > *gripping_;
-  const double share = minimum_jerk(std::clamp((time - *gripping_) / (kLoad * skill_.pace), 0.0, 1.0));
-  const bool helped = share == 1.0 && touch.sight.held && touch.sight.grip < kUnfelt * wanted_;
-  if (pressed && !helped) {
+void SimulatedOperator::control_grip(double time, double since) {
+  if (!grip_began_ || since <= 0.0) return;
+  const Moment& touch = before(time, kTouchDelay);
+  const bool in_contact = touch.depth > 0.0 && touch.time > *grip_began_;
+  const double fraction = minimum_jerk(std::clamp((time - *grip_began_) / (paced(kLoadTime)), 0.0, 1.0));
+  const bool assisted =
+      fraction == 1.0 && touch.sight.held && touch.sight.grip < kMinFeltFraction * target_force_;
+  if (in_contact && !assisted) {
     const double found = std::max(kMinStiffness, touch.sight.grip / touch.depth);
-    stiffness_ += std::min(1.0, since / kLearning) * (found - stiffness_);
+    stiffness_ += std::min(1.0, since / kLearningTime) * (found - stiffness_);
   }
   const double load = mass_ * (acceleration(time) - touch.sight.gravity).norm();
   const double needed = load / (2.0 * friction_);
-  wanted_ = share * firmness_ * (skill_.least_grip + (1.0 + skill_.grip_margin) * needed);
-  const double aim = std::min(postures_->deepest(), wanted_ / stiffness_), most = kClosingSpeed * since;
-  const double from = postures_->near_depth * (1.0 - share);
-  depth_ += std::clamp(from + aim - depth_, -most, most);
+  target_force_ = fraction * firmness_ * (skill_.least_grip + (1.0 + skill_.grip_margin) * needed);
+  const double aim = std::min(postures_->deepest(), target_force_ / stiffness_),
+               max_change = kClosingSpeed * since;
+  const double from = postures_->near_depth * (1.0 - fraction);
+  depth_ += std::clamp(from + aim - depth_, -max_change, max_change);
 }
 
 void SimulatedOperator::decide(double time, const Moment& seen) {
@@ -151,14 +146,14 @@ void SimulatedOperator::decide(double time, const Moment& seen) {
       if (arrived(time)) grasp(time, seen);
       return;
     case Phase::grasping:
-      if (is_astray(seen) || (arrived(time) && distance_from_grip(seen) > kOutOfHand)) return lose();
+      if (is_astray(seen) || (arrived(time) && distance_from_grip(seen) > kMaxGripOffset)) return withdraw();
       if (arrived(time)) carry(seen);
       return;
     case Phase::carrying:
-      if (distance_from_grip(seen) > kOutOfHand) return lose();
+      if (distance_from_grip(seen) > kMaxGripOffset) return withdraw();
       if (arrived(seen.time)) follow_up(time, seen);
       return;
-    case Phase::letting_go:
+    case Phase::releasing:
       if (arrived(time)) phase_ = Phase::done;
       return;
     case Phase::withdrawing:
@@ -175,10 +170,10 @@ void SimulatedOperator::decide(double time, const Moment& seen) {
 }
 
 void SimulatedOperator::watch(double time, const Moment& seen) {
-  if (seen.sight.place && seen.sight.twist.linear.norm() <= kCatchable) return reach(time, seen);
+  if (seen.sight.place && seen.sight.twist.linear.norm() <= kMaxObjectSpeed) return reach(time, seen);
   if (phase_ == Phase::watching) return;
   plan(Phase::withdrawing, seen);  // stops in place
-  then(kMinDuration, shifted(now_.wrist, 0.5 * kMinDuration * velocity_), now_.posture);
+  append(keyframes_, kMinDuration, shifted(now_.wrist, 0.5 * kMinDuration * velocity_), now_.posture);
 }
 
 /// One movement: the hand opens on its path, and has closed around the object on arrival.
@@ -188,12 +183,13 @@ void SimulatedOperator::reach(double time, const Moment& seen) {
   const double distance = (wrist_about(seen.sight.object).position - now_.wrist.position).norm();
   const double duration = movement_time(distance, kGraspWidth);
   const Vector3 drift = seen.sight.twist.linear;
-  const Pose wrist = wrist_about(expected(seen.sight, lag + duration));
+  const Pose wrist = wrist_about(expected(seen.sight.object, seen.sight.twist, lag + duration));
   plan(Phase::reaching, seen, drift);
-  then(duration, shifted(wrist, -duration * drift), postures_->near);
-  bow_ = kApproach * retreat_ + 0.5 * (way_.back().wrist.position - way_.front().wrist.position);
-  fingers_ = {way_.front(), way_.front(), way_.back()};
-  fingers_[1].time = kWidest * duration;
+  append(keyframes_, duration, shifted(wrist, -duration * drift), postures_->near);
+  bow_ = kApproachLength * retreat_ +
+         0.5 * (keyframes_.back().wrist.position - keyframes_.front().wrist.position);
+  fingers_ = {keyframes_.front(), keyframes_.front(), keyframes_.back()};
+  fingers_[1].time = kMaxApertureFraction * duration;
   fingers_[1].posture = postures_->open;
 }
 
@@ -202,42 +198,42 @@ void SimulatedOperator::reach(double time, const Moment& seen) {
 /// 1993); the hand waits at its end for the fingers.
 void SimulatedOperator::replan_fingers(double size) {
   fit_to(size);
-  const double reach = way_.back().time, since = last_time_ - began_;
-  const double widest = std::max(kWidest * reach, since + kMinDuration);
-  fingers_ = {way_.front(), way_.front(), way_.back()};
+  const double reach = keyframes_.back().time, since = last_time_ - began_;
+  const double widest = std::max(kMaxApertureFraction * reach, since + kMinDuration);
+  fingers_ = {keyframes_.front(), keyframes_.front(), keyframes_.back()};
   fingers_[0].time = since;
   fingers_[0].posture = now_.posture;
   fingers_[0].rate = rate_;
   fingers_[1].time = widest;
   fingers_[1].posture = postures_->open;
-  fingers_[2].time = widest + (1.0 - kWidest) * reach;
+  fingers_[2].time = widest + (1.0 - kMaxApertureFraction) * reach;
   fingers_[2].posture = postures_->near;
 }
 
 void SimulatedOperator::grasp(double time, const Moment& seen) {
-  const double close = kLoad * skill_.pace, settle = skill_.reaction_time + skill_.decision_time;
+  const double close = paced(kLoadTime), settle = skill_.reaction_time + skill_.decision_time;
   const Vector3 drift = drift_;
   const Pose wrist = now_.wrist;
   plan(Phase::grasping, seen, drift);
-  gripping_ = time;
+  grip_began_ = time;
   depth_ = postures_->near_depth;
-  then(close, wrist, now_.posture);
-  then(settle, shifted(wrist, -0.5 * settle * drift), now_.posture);
-  way_.back().velocity = -drift;
+  append(keyframes_, close, wrist, now_.posture);
+  append(keyframes_, settle, shifted(wrist, -0.5 * settle * drift), now_.posture);
+  keyframes_.back().velocity = -drift;
 }
 
 void SimulatedOperator::carry(const Moment& seen) {
-  if (!seen.sight.place) return let_go();
+  if (!seen.sight.place) return release();
   in_hand_ = seen.wrist.to_local(seen.sight.object.position);
   const Vector3 wrist = *seen.sight.place - now_.wrist.orientation * in_hand_;
   const double duration = movement_time((wrist - now_.wrist.position).norm(), kPlaceWidth);
   plan(Phase::carrying, seen);
-  then(duration, {wrist, now_.wrist.orientation}, now_.posture);
+  append(keyframes_, duration, {wrist, now_.wrist.orientation}, now_.posture);
 }
 
 /// Checks that the object is at its target.
 void SimulatedOperator::follow_up(double time, const Moment& seen) {
-  if (!seen.sight.place) return let_go();
+  if (!seen.sight.place) return release();
   if (seen.sight.swing != Vector3::Zero()) {
     if (!swing_began_) swing_began_ = time;
     swing_ = seen.sight.swing;
@@ -246,33 +242,34 @@ void SimulatedOperator::follow_up(double time, const Moment& seen) {
   const double precision = std::min(skill_.precision, seen.sight.precision);
   const bool missed = (seen.sight.object.position - *seen.sight.place).norm() > precision;
   if (missed) return carry(seen);
-  if (time > began_ + way_.back().time + kPatience) lose();
+  if (time > began_ + keyframes_.back().time + kMaxTargetWait) withdraw();
 }
 
-void SimulatedOperator::let_go() {
+void SimulatedOperator::release() {
   const Pose wrist = now_.wrist;
-  plan(Phase::letting_go, aim_);
-  close_to(postures_->near_depth, kUnload * skill_.pace);
-  then(kOpen * skill_.pace, wrist, postures_->open);
-  then(kRetreat * skill_.pace, shifted(wrist, kApproach * retreat_), postures_->open);
-  way_.back().velocity = 0.1 * retreat_;
-  then(kGoAside * skill_.pace, shifted(wrist, kApproach * retreat_ + kRest), relaxed_posture());
+  plan(Phase::releasing, aim_);
+  close_to(postures_->near_depth, paced(kUnloadTime));
+  append(keyframes_, paced(kOpeningTime), wrist, postures_->open);
+  append(keyframes_, paced(kWithdrawalTime), shifted(wrist, kApproachLength * retreat_), postures_->open);
+  keyframes_.back().velocity = 0.1 * retreat_;
+  append(keyframes_, paced(kReturnTime), shifted(wrist, kApproachLength * retreat_ + kRestOffset),
+         relaxed_posture());
 }
 
 /// A released object still adheres to the hand: rotates the flat hand.
 void SimulatedOperator::shake_off() {
   const Quaternion over = now_.wrist.orientation * turn(120.0, Vector3::UnitX());
-  const Vector3 away = now_.wrist.position + 0.5 * kApproach * retreat_;
-  plan(Phase::letting_go, aim_);
-  then(kOpen * skill_.pace, {away, now_.wrist.orientation}, flat_posture());
-  then(kOpen * skill_.pace, {away, over}, flat_posture());
+  const Vector3 away = now_.wrist.position + 0.5 * kApproachLength * retreat_;
+  plan(Phase::releasing, aim_);
+  append(keyframes_, paced(kOpeningTime), {away, now_.wrist.orientation}, flat_posture());
+  append(keyframes_, paced(kOpeningTime), {away, over}, flat_posture());
 }
 
-void SimulatedOperator::lose() {
-  firmness_ = std::min(kFirmest, kFirmer * firmness_);
-  gripping_.reset();
+void SimulatedOperator::withdraw() {
+  firmness_ = std::min(kMaxFirmness, kFirmnessFactor * firmness_);
+  grip_began_.reset();
   plan(Phase::withdrawing, aim_);
-  then(kOpen * skill_.pace, shifted(now_.wrist, kApproach * retreat_), postures_->open);
+  append(keyframes_, paced(kOpeningTime), shifted(now_.wrist, kApproachLength * retreat_), postures_->open);
 }
 
 void SimulatedOperator::prepare_grasp(double size) {
@@ -284,8 +281,8 @@ void SimulatedOperator::prepare_grasp(double size) {
   }
   grasp_.opening = skill_.opening;
   fit_to(size);
-  misplaced_.position = random_.gaussian_vector(skill_.placing_error);
-  misplaced_.orientation = rotation_by(random_.gaussian_vector(skill_.turning_error));
+  grasp_error_.position = random_.gaussian_vector(skill_.placing_error);
+  grasp_error_.orientation = rotation_by(random_.gaussian_vector(skill_.turning_error));
 }
 
 /// Plans the fingers for an object of this size: its surfaces are moved along their normals.
@@ -304,13 +301,14 @@ Pose SimulatedOperator::wrist_about(const Pose& object) {
     return comfortable.angularDistance(object.orientation * turn * comfortable);
   };
   const Quaternion turn =
-      *std::min_element(turns_.begin(), turns_.end(),
+      *std::min_element(symmetries_.begin(), symmetries_.end(),
                         [&](const Quaternion& a, const Quaternion& b) { return strain(a) < strain(b); });
-  const Pose wrist = misplaced_ * Pose{Vector3::Zero(), turn} * usual_.wrist;
+  const Pose wrist = grasp_error_ * Pose{Vector3::Zero(), turn} * usual_.wrist;
   retreat_ = object.orientation * turn * usual_.retreat;
   in_hand_ = wrist.to_local(Vector3::Zero());
-  middle_ = in_hand_ + (1.0 - kUnseen) * (wrist.orientation.conjugate() * misplaced_.position);
-  beside_ = object.orientation * misplaced_.position;
+  seen_in_wrist_ =
+      in_hand_ + (1.0 - kUnseenFraction) * (wrist.orientation.conjugate() * grasp_error_.position);
+  error_in_world_ = object.orientation * grasp_error_.position;
   return object * wrist;
 }
 
@@ -321,31 +319,27 @@ void SimulatedOperator::plan(Phase phase, const Moment& seen, const Vector3& dri
   began_ = last_time_;
   aim_ = seen;
   drift_ = drift;
-  way_ = {{0.0, now_.wrist, now_.posture, velocity}};
+  keyframes_ = {{0.0, now_.wrist, now_.posture, velocity}};
   fingers_.clear();
   bow_ = corrected_ = Vector3::Zero();
   swing_began_.reset();
-  if (phase == Phase::reaching || phase == Phase::withdrawing) gripping_.reset();
-}
-
-void SimulatedOperator::then(double duration, const Pose& wrist, const HandPosture& posture) {
-  way_.push_back({way_.back().time + duration, wrist, posture});
+  if (phase == Phase::reaching || phase == Phase::withdrawing) grip_began_.reset();
 }
 
 /// Moves the fingers only.
 void SimulatedOperator::close_to(double depth, double duration) {
   constexpr int kSteps = 8;
   const Pose wrist = now_.wrist;
-  gripping_.reset();
+  grip_began_.reset();
   for (int i = 1; i <= kSteps; ++i) {
-    const double share = minimum_jerk(static_cast<double>(i) / kSteps);
-    then(duration / kSteps, wrist, postures_->at(depth_ + share * (depth - depth_)));
+    const double fraction = minimum_jerk(static_cast<double>(i) / kSteps);
+    append(keyframes_, duration / kSteps, wrist, postures_->at(depth_ + fraction * (depth - depth_)));
   }
 }
 
 bool SimulatedOperator::is_astray(const Moment& seen) const {
   const Vector3 where = aim_.sight.object.position + (seen.time - aim_.time) * drift_;
-  return (seen.sight.object.position - where).norm() > kAstray;
+  return (seen.sight.object.position - where).norm() > kMaxObjectOffset;
 }
 
 double SimulatedOperator::distance_from_grip(const Moment& seen) const {
