@@ -69,7 +69,7 @@ bool is_solid(const TriangleMesh& mesh, const Triangles& part) {
   return std::abs(volume_of(mesh, part)) > kMinVolume * extent * extent * extent && is_closed(part);
 }
 
-/// Joins vertices at max_triangles `distance` apart, and drops triangles that become degenerate.
+/// Joins vertices at most `distance` apart, and drops triangles that become degenerate.
 void weld(TriangleMesh& mesh, double distance) {
   using Cell = std::array<long long, 3>;
   std::map<Cell, std::vector<int>> cells;
