@@ -28,67 +28,29 @@ std::vector<MeshShape> parts_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
-/// The nearest part found last, by the place of the segment's centre: an initial guess for the next search.
-/// No result depends on it, so that all callers may share it.
-///
-/// The place's cell in a grid of 32 across the mesh is hashed to one of a prime number of entries: two cells
-/// that share one only make worse guesses. Relaxed order is enough, as a guess stands for itself.
-class GuessMemory {
- public:
-  explicit GuessMemory(const MeshSurface& surface)
-      : corner_(surface.bounds().min()),
-        per_metre_(kCells / std::max(1e-9, surface.bounds().sizes().maxCoeff())) {
-    for (std::atomic<int>& part : parts_) part.store(-1, std::memory_order_relaxed);
-  }
-  std::atomic<int>& at(const Segment& segment) {
-    const Vector3 place = per_metre_ * (segment.middle() - corner_);
-    std::uint32_t cell = 0;
-    for (int i = 0; i < 3; ++i) {
-      const double held = std::max(-1000.0, std::min(place[i], 1000.0));
-      cell = cell * 73u + static_cast<std::uint32_t>(static_cast<int>(held + 1000.0));
-    }
-    return parts_[cell % parts_.size()];
-  }
-
- private:
-  static constexpr double kCells = 32.0;  // across the mesh
-  const Vector3 corner_;
-  const double per_metre_;
-  std::array<std::atomic<int>, 1021> parts_;
-};
-
-/// Parts near recent segments, so that a query from almost the same place needs no search. No result depends
-/// on it either; a caller that finds an entry in use by another does without.
+/// Parts near recent segments, so that a query from almost the same place needs no search, and one from
+/// nearby a short one. No result depends on it, so that all callers may share it; one that finds an entry in
+/// use by another does without.
 ///
 /// Entries lie in sets by the 2 mm cells of both ends, four to a set. The set is locked by a flag while it is
-/// read or written, and no caller waits. A segment that has moved by kMaxMotion or more gets an entry for its
-/// place alone, without parts: gathering them pays only if it stays.
+/// read or written, and no caller waits. A segment that has moved by kMaxMotion or more gets an entry without
+/// parts: gathering them pays only if it stays.
 class NearMemory {
  public:
-  /// Returns the nearest feature, from memory if possible, else by `search()`, whose result is stored if the
-  /// segment hardly moves.
-  template <typename Search>
-  MeshNearest nearest(const MeshShape& shape, const Segment& segment, double range, const Search& search) {
+  MeshNearest nearest(const MeshShape& shape, const Segment& segment, double range) {
     Set& set = sets_[name_of(segment) % sets_.size()];
-    if (set.in_use.test_and_set(std::memory_order_acquire)) return search();
+    if (set.in_use.test_and_set(std::memory_order_acquire))
+      return MeshNearest(shape.surface, shape.tree, segment, range, -1);
     const Use use(set.in_use);
-    std::size_t closest = 0;
-    double min_motion = 1e300;
-    for (std::size_t i = 0; i < set.entries.size(); ++i) {
-      const double moved = set.entries[i].moved(segment);
-      if (moved < min_motion) min_motion = moved, closest = i;
-    }
-    NearParts& entry = set.entries[closest];
-    if (min_motion < entry.margin) return MeshNearest(shape.surface, segment, range, entry);
-    MeshNearest found = search();
-    if (min_motion < kMaxMotion) {
-      entry = found.found() ? found.near_parts(shape.tree) : NearParts{};
-    } else {
-      set.next = (set.next + 1) % set.entries.size();
-      set.entries[set.next] = NearParts{};
-      closest = set.next;
-    }
-    set.entries[closest].start = segment.start, set.entries[closest].end = segment.end();
+    NearParts* entry = &set.entries[0];
+    for (NearParts& other : set.entries)
+      if (other.moved(segment) < entry->moved(segment)) entry = &other;
+    const double motion = entry->moved(segment);
+    if (motion < entry->margin) return MeshNearest(shape.surface, segment, range, *entry);
+    MeshNearest found(shape.surface, shape.tree, segment, range, entry->nearest);
+    if (motion >= kMaxMotion) entry = &set.entries[set.next = (set.next + 1) % set.entries.size()];
+    *entry = found.found() && motion < kMaxMotion ? found.near_parts(shape.tree) : NearParts{};
+    entry->start = segment.start, entry->end = segment.end(), entry->nearest = found.part();
     return found;
   }
 
@@ -121,11 +83,10 @@ class NearMemory {
   std::array<Set, 127> sets_;
 };
 
-/// A mesh of parts is their union. What is outside all of them is nearest to the union's surface, whatever
-/// lies within: one search through the tree of all faces finds it. What is inside a part has to leave that,
-/// and is as deep as in the part that it is deepest in.
+/// A mesh of parts is their union. Outside all of them one search through the tree of all faces finds the
+/// nearest feature. Inside, the depth is that in the part where it is deepest.
 struct MeshCollider::Impl {
-  explicit Impl(const TriangleMesh& mesh) : shape(mesh), parts(parts_of(mesh)), guesses(shape.surface) {
+  explicit Impl(const TriangleMesh& mesh) : shape(mesh), parts(parts_of(mesh)) {
     for (const MeshShape& part : parts)
       deepest = std::max(deepest, 0.5 * part.surface.bounds().sizes().minCoeff());
     search_cost = mean_search_cost();
@@ -133,13 +94,7 @@ struct MeshCollider::Impl {
 
   MeshNearest nearest(const MeshShape& of, const Segment& segment, double range) const {
     if (&of != &shape) return MeshNearest(of.surface, of.tree, segment, range, -1);
-    return memory.nearest(shape, segment, range, [&] { return searched(segment, range); });
-  }
-  MeshNearest searched(const Segment& segment, double range) const {
-    std::atomic<int>& guess = guesses.at(segment);
-    MeshNearest search(shape.surface, shape.tree, segment, range, guess.load(std::memory_order_relaxed));
-    if (search.part() >= 0) guess.store(search.part(), std::memory_order_relaxed);
-    return search;
+    return memory.nearest(shape, segment, range);
   }
   /// N.gap < 0 with the gap from the surface to the segment: the segment's nearest place is below the surface
   /// there (Baerentzen & Aanaes 2005).
@@ -161,7 +116,6 @@ struct MeshCollider::Impl {
   std::vector<MeshShape> parts;
   double deepest = 0.0;  // nothing within a part is farther from its surface [m]
   double search_cost = 1.0;
-  mutable GuessMemory guesses;
   mutable NearMemory memory;
 };
 
@@ -195,8 +149,7 @@ std::optional<ClosestFeatures> MeshCollider::Impl::leave_parts(const Segment& se
   return best;
 }
 
-/// Searches for copies of some of its edges, slightly moved, without memory: what decides how long a search
-/// takes, above all how long and thin the faces are, decides it there too.
+/// Searches for displaced copies of some of its edges, without memory. Long thin faces make searches slow.
 double MeshCollider::Impl::mean_search_cost() const {
   constexpr int kSamples = 32;
   constexpr double kMove = 0.01, kOrdinaryVisits = 50.0;  // fraction of the mesh's size, and per search
@@ -261,15 +214,15 @@ double MeshCollider::search_cost() const {
 }
 
 double MeshCollider::deep_search_cost(double depth) const {
-  constexpr double kOfShallow = 10.0, kPartsPerSearch = 600.0;
+  constexpr double kDeepFactor = 10.0, kPartsPerSearch = 600.0;
   const MeshSurface& surface = impl_->shape.surface;
   const double parts = static_cast<double>(surface.faces().size() + surface.edges().size());
   const double centred = std::min(1.0, 2.0 * depth / std::max(1e-9, surface.bounds().sizes().minCoeff()));
-  return kOfShallow * impl_->search_cost + parts / kPartsPerSearch * centred * centred;
+  return kDeepFactor * impl_->search_cost + parts / kPartsPerSearch * centred * centred;
 }
 
-/// From deep inside the surface may be any way off. A segment whose middle is out of the bounds has at most
-/// an end inside, and then cuts the surface, at the distance 0: it is searched no farther than the margin.
+/// Deep inside, the surface may be at any distance. A segment whose middle is out of the bounds is searched
+/// no farther than the margin: with an end inside it cuts the surface, at the distance 0.
 std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, double margin) const {
   const MeshSurface& surface = impl_->shape.surface;
   const Segment segment(capsule);
@@ -287,8 +240,8 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
     }
   }
 
-  // In this order: a face's own normal for what is outside; the way out for what is on the surface, where the
-  // gap has no direction, and for what is inside, where it points inwards.
+  // Outside the normal is along the gap; on the surface, where the gap has no direction, and inside, where it
+  // points inwards, the shortest exit gives it.
   const SurfaceNearest& nearest = search.nearest();
   ClosestFeatures features{nearest.distance, search.gap() / nearest.distance, nearest.point,
                            nearest.stretch.middle(), surface.number(nearest)};
@@ -313,7 +266,7 @@ AxisSpan MeshCollider::span(const Capsule& capsule, const ClosestFeatures& featu
   const MeshSurface& surface = impl_->shape.surface;
   const bool is_face = features.part >= 0 && features.part < static_cast<int>(surface.faces().size());
   if (!is_face || axis.along.isZero(0.0)) return {s, s};
-  const Stretch over = surface.over(surface.faces()[features.part], axis, s);
+  const Interval over = surface.over(surface.faces()[features.part], axis, s);
   if ((over.s1 - over.s0) * axis.along.norm() < kMinFlatLength) return {s, s};
   return {std::min(std::max(over.s0, 0.0), s), std::max(std::min(over.s1, 1.0), s)};
 }

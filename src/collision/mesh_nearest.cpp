@@ -31,108 +31,69 @@ bool MeshNearest::is_all() const {
          surface_.is_support(nearest(), gap());
 }
 
-/// Branch and bound, the nearer child first: a node has nothing within `limit` of the segment where its box
-/// is farther from the segment's. kRounding keeps parts at the limit itself.
+/// Branch and bound: a node has nothing within `limit` of the segment where its box is farther from the
+/// segment's. kRounding keeps parts at the limit itself.
 template <typename Limit, typename See>
 void MeshNearest::visit(const MeshTree& tree, const Limit& limit, const See& see) const {
   constexpr double kRounding = 1e-12;  // [m]
-  struct Open {
-    int node;
-    double squared;  // from the node's box to the segment's
-  };
   const Vector3 middle = segment_.middle(), half = 0.5 * segment_.along.cwiseAbs();
-  const auto look = [&](int node) -> Open { return {node, tree.node(node).squared_gap(middle, half)}; };
-  std::array<Open, MeshTree::kMaxLevels> open;
-  std::size_t count = 0;
-  open[count++] = look(0);
-  while (count > 0) {
-    const Open next = open[--count];
-    const MeshTree::Node& node = tree.node(next.node);
-    const double limit_now = limit(), reach = limit_now + kRounding;
-    if (next.squared > reach * reach || is_below(node, limit_now)) continue;
-    for (int i = node.first; i < node.first + node.count; ++i) see(tree.part(i));
-    if (node.count > 0) continue;
-    const Open one = look(node.first), other = look(node.first + 1);
-    const bool one_first = one.squared <= other.squared;
-    open[count++] = one_first ? other : one;
-    open[count++] = one_first ? one : other;
-  }
+  double now = 0.0;
+  const auto squared_limit = [&] {
+    now = limit();
+    return (now + kRounding) * (now + kRounding);
+  };
+  tree.search([&](const MeshTree::Node& node) { return node.squared_gap(middle, half); }, squared_limit,
+              [&](const MeshTree::Node& node) { return !is_below(node, now); }, see);
 }
 
 /// The limit shrinks as nearer parts are found: it is evaluated at every node.
 void MeshNearest::search(const MeshTree& tree, double range) {
-  visit(
-      tree,
-      [&] {
-        ++visits_;
-        return limit(range);
-      },
-      [&](int part) {
-        ++visits_;
-        measure(part, range);
-      });
+  const auto counted_limit = [&] {
+    ++visits_;
+    return limit(range);
+  };
+  visit(tree, counted_limit, [&](int part) {
+    ++visits_;
+    measure(part, range);
+  });
 }
 
-/// All parts that may be the nearest one while the segment's ends have not moved by more than `margin`. A way
-/// of s changes no distance by more than s: what was farther than the nearest by 2 s is then still not
-/// nearer. A face that is nearest at its border says nothing: it comes with the edges there.
-///
-/// With d the nearest's distance and b that of the nearest part that is left out: after a displacement of s
-/// the nearest is no farther than d + s, and all left out no nearer than b - s, so that margin = (b - d) / 2.
-/// Faces beyond the first 28 and edges beyond the nearest 12 bring b down.
+/// Parts that may be the nearest one while the segment's ends have not moved by more than `margin`. A motion
+/// of s changes no distance by more than s. With d the nearest's distance and b a bound below which all parts
+/// are kept: the nearest is then no farther than d + s, and all others no nearer than b - s, so that margin =
+/// (b - d) / 2. A face counts from its inside or its edges, whichever is nearer. What exceeds the capacity
+/// brings b down.
 NearParts MeshNearest::near_parts(const MeshTree& tree) const {
-  constexpr std::size_t kEdgesKept = 12, kFacesKept = NearParts::kCapacity - kEdgesKept;
   constexpr double kMaxMargin = 1e-4, kRounding = 1e-9;
-  struct Near {
-    double distance;
-    int part;
-  };
-  std::array<Near, kEdgesKept + 1> edges;
-  std::array<Near, kFacesKept> faces;
-  std::size_t edge_count = 0, face_count = 0;
+  NearParts near;
+  std::array<double, NearParts::kCapacity> distances;
   double bound = nearest().distance + 2.0 * kMaxMargin;
-  const auto before = [](const Near& a, const Near& b) {
-    return a.distance != b.distance ? a.distance < b.distance : a.part < b.part;
+  const auto add = [&](int part, double distance) {
+    if (distance >= bound) return;
+    std::size_t place =
+        std::find(near.parts.begin(), near.parts.begin() + near.count, part) - near.parts.begin();
+    if (place < near.count) {
+      distances[place] = std::min(distances[place], distance);
+      return;
+    }
+    if (near.count == NearParts::kCapacity) {
+      place = std::max_element(distances.begin(), distances.end()) - distances.begin();
+      bound = std::max(distance, distances[place]);
+      if (distance == bound) return;
+    } else {
+      ++near.count;
+    }
+    near.parts[place] = part, distances[place] = distance;
   };
   visit(
       tree, [&] { return bound; },
       [&](int part) {
         if (is_too_far(part, bound)) return;
-        const bool is_face = part < faces_;
-        const SurfaceNearest now = is_face ? surface_.nearest_on_face(part, segment_)
-                                           : surface_.nearest_on_edge(part - faces_, segment_);
-        if (now.distance >= bound) return;
-        if (is_face) {
-          if (face_count == kFacesKept) {
-            bound = std::min(bound, now.distance);
-            return;
-          }
-          faces[face_count++] = {now.distance, part};
-          return;
-        }
-        std::size_t place = edge_count++;
-        for (; place > 0 && before({now.distance, part}, edges[place - 1]); --place)
-          edges[place] = edges[place - 1];
-        edges[place] = {now.distance, part};
-        if (edge_count > kEdgesKept) bound = edges[--edge_count].distance;
+        const double distance = measured(part).distance;
+        add(part, distance);
+        if (part < faces_) return;
+        for (const int face : surface_.edges()[part - faces_].faces) add(face, distance);
       });
-  NearParts near;
-  const auto add = [&](int part) {
-    const auto end = near.parts.begin() + near.count;
-    if (std::find(near.parts.begin(), end, part) != end) return;
-    if (near.count < NearParts::kCapacity) near.parts[near.count] = part;
-    ++near.count;
-  };
-  std::sort(faces.begin(), faces.begin() + face_count, before);
-  for (std::size_t i = 0; i < face_count; ++i)
-    if (faces[i].distance < bound) add(faces[i].part);
-  for (std::size_t i = 0; i < edge_count; ++i) {
-    if (edges[i].distance >= bound) continue;
-    add(edges[i].part);
-    for (const int face : surface_.edges()[edges[i].part - faces_].faces) add(face);
-  }
-  if (near.count > NearParts::kCapacity) return {};
-  near.start = segment_.start, near.end = segment_.end();
   near.margin = std::max(0.0, 0.5 * (bound - nearest().distance) - kRounding);
   return near;
 }
@@ -160,12 +121,16 @@ bool MeshNearest::is_too_far(int part, double limit) const {
   return min_height_ - facing_.dot(edge.start) - std::max(0.0, facing_.dot(edge.along)) > limit;
 }
 
+SurfaceNearest MeshNearest::measured(int part) const {
+  return part < faces_ ? surface_.nearest_on_face(part, segment_)
+                       : surface_.nearest_on_edge(part - faces_, segment_);
+}
+
 /// Ties go to the lesser number, whichever was measured first.
 void MeshNearest::measure(int part, double range) {
   if (is_too_far(part, limit(range))) return;
   const bool is_face = part < faces_;
-  const SurfaceNearest now =
-      is_face ? surface_.nearest_on_face(part, segment_) : surface_.nearest_on_edge(part - faces_, segment_);
+  const SurfaceNearest now = measured(part);
   SurfaceNearest& best = is_face ? on_face_ : on_edge_;
   int& best_part = is_face ? face_ : edge_;
   if (now.distance > best.distance || (now.distance == best.distance && part > best_part)) return;
@@ -189,8 +154,8 @@ namespace {
 struct Exit {
   double separation = -1e300;
   Vector3 normal = Vector3::UnitZ();
-  Stretch stretch{0.5, 0.5};  // of the segment, that comes out last
-  bool through = false;       // the face itself, not only its plane
+  Interval stretch{0.5, 0.5};  // of the segment, that comes out last
+  bool through = false;        // the face itself, not only its plane
   int face = -1;
 };
 
@@ -206,8 +171,8 @@ Exit exit_distance(const Segment& segment, const MeshSurface& surface, int index
   exit.separation = face.normal.dot(segment.start) - face.height + std::min(rise, 0.0);
   exit.normal = face.normal;
   exit.stretch = {rise > -kParallel ? 0.0 : 1.0, rise < kParallel ? 1.0 : 0.0};
-  const Stretch over = surface.over(face, segment, exit.stretch.middle());
-  const Stretch through{std::max(over.s0, exit.stretch.s0), std::min(over.s1, exit.stretch.s1)};
+  const Interval over = surface.over(face, segment, exit.stretch.middle());
+  const Interval through{std::max(over.s0, exit.stretch.s0), std::min(over.s1, exit.stretch.s1)};
   exit.through = through.s0 <= through.s1;
   if (exit.through) exit.stretch = through;
   return exit;
@@ -250,7 +215,7 @@ class ExitSearch {
   double cost(const MeshTree::Node& node) const {
     const double depth = node.depth(segment_);
     if (surface_.convex()) return depth;
-    return node.may_be_exit(segment_) ? std::max(depth, node.distance(segment_)) : kNoWay;
+    return node.may_be_exit(segment_) ? std::max(depth, node.distance(segment_)) : kUnreachable;
   }
   /// Less the best separation is the least depth so far; 1e-9 keeps ties, which the numbers decide.
   double limit() const { return -std::max({face_.separation, edge_.distance, known_}) + 1e-9; }
@@ -268,7 +233,7 @@ class ExitSearch {
   }
 
  private:
-  static constexpr double kNoWay = std::numeric_limits<double>::infinity();  // beyond any limit
+  static constexpr double kUnreachable = std::numeric_limits<double>::infinity();  // beyond any limit
 
   /// A convex solid has every plane as a bound, also from outside by rounding. Elsewhere a face that the
   /// segment is above is no exit.
@@ -309,7 +274,7 @@ ClosestFeatures leave_mesh(const Segment& segment, const MeshSurface& surface, c
                            int fallback, const ClosestFeatures* known) {
   ExitSearch search(segment, surface, known == nullptr ? -1e300 : known->distance);
   tree.search([&](const MeshTree::Node& node) { return search.cost(node); }, [&] { return search.limit(); },
-              [&](int part) { search.see(part); });
+              [](const MeshTree::Node&) { return true; }, [&](int part) { search.see(part); });
   if (known != nullptr && !search.found()) return *known;
   const ClosestFeatures best = search.result(fallback);
   return known != nullptr && known->distance > best.distance + kParallel ? *known : best;

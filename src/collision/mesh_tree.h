@@ -6,10 +6,9 @@
 
 namespace mrhi {
 
-/// A tree over the faces and edges of a surface. Each node knows a ball, a box and a slab that hold its
-/// parts, and a cone that holds their normals. A box holds long thin faces far more closely than a ball. On a
-/// curved surface the slab is thin, and a search that knows a direction sees at once that a node is below all
-/// it has found. (Spatialized normal cones: Johnson & Cohen 2001.)
+/// A tree over the faces and edges of a surface. Each node has a ball, a box (tighter for long thin faces)
+/// and a slab (thin on a curved surface) around its parts, and a cone of their normals (spatialized normal
+/// cones: Johnson & Cohen 2001).
 class MeshTree {
  public:
   struct Node {
@@ -28,13 +27,12 @@ class MeshTree {
     }
     /// The planes of its parts are no less deep around both ends of the segment than this.
     double depth(const Segment& segment) const;
-    /// False if no part is where a straight way along its normal leads from what of the segment comes out
-    /// last.
+    /// False if no part is where a path along its normal leads from the segment's point that leaves last.
     bool may_be_exit(const Segment& segment) const;
   };
 
-  /// No branch is longer. A stack of open nodes has at most one more than there are levels, as each node that
-  /// is opened puts back two: halving by the median, 64 hold any mesh.
+  /// Enough for any mesh: a stack of open nodes has at most one more than there are levels, halved by the
+  /// median.
   static constexpr std::size_t kMaxLevels = 64;
 
   explicit MeshTree(const MeshSurface& surface);
@@ -43,23 +41,10 @@ class MeshTree {
   /// i in first..first + count of a leaf: a face, or that many and an edge.
   int part(int i) const { return parts_[i]; }
 
-  /// Visits nodes that `wanted(node)`, always in the same order; `see(part)` the parts of leaves.
-  template <typename Admits, typename See>
-  void visit(const Admits& admits, const See& see) const {
-    std::array<int, kMaxLevels> open;
-    std::size_t count = 0;
-    open[count++] = 0;
-    while (count > 0) {
-      const Node& now = node(open[--count]);
-      if (!admits(now)) continue;
-      for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
-      if (now.count == 0) open[count++] = now.first + 1, open[count++] = now.first;
-    }
-  }
-
-  /// Visits nodes with cost(node) <= limit(), the lesser first; `see(part)` the parts of leaves.
-  template <typename Cost, typename Limit, typename See>
-  void search(const Cost& cost, const Limit& limit, const See& see) const {
+  /// Visits nodes with cost(node) <= limit() that `admits(node)`, the lesser cost first; `see(part)` the
+  /// parts of leaves. Of equal costs the first child comes first, so that the order is always the same.
+  template <typename Cost, typename Limit, typename Admits, typename See>
+  void search(const Cost& cost, const Limit& limit, const Admits& admits, const See& see) const {
     struct Open {
       int node;
       double cost;
@@ -69,17 +54,19 @@ class MeshTree {
     open[count++] = {0, cost(node(0))};
     while (count > 0) {
       const Open next = open[--count];
-      if (next.cost > limit()) continue;
       const Node& now = node(next.node);
-      if (now.count > 0) {
-        for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
-        continue;
-      }
+      if (next.cost > limit() || !admits(now)) continue;
+      for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
+      if (now.count > 0) continue;
       Open near{now.first, cost(node(now.first))}, far{now.first + 1, cost(node(now.first + 1))};
       if (far.cost < near.cost) std::swap(near, far);
-      if (far.cost <= limit()) open[count++] = far;
-      if (near.cost <= limit()) open[count++] = near;
+      open[count++] = far, open[count++] = near;
     }
+  }
+  /// The same for all nodes that `admits(node)`.
+  template <typename Admits, typename See>
+  void visit(const Admits& admits, const See& see) const {
+    search([](const Node&) { return 0.0; }, [] { return 0.0; }, admits, see);
   }
 
  private:
