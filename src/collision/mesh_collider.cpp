@@ -28,29 +28,62 @@ std::vector<MeshShape> parts_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
-/// Parts near recent segments, so that a query from almost the same place needs no search, and one from
-/// nearby a short one. No result depends on it, so that all callers may share it; one that finds an entry in
-/// use by another does without.
+/// The nearest part found last, by the place of the segment's centre: an initial guess for the next search.
+/// No result depends on it, so that all callers may share it.
+///
+/// The place's cell in a grid of 32 across the mesh is hashed to one of a prime number of entries: two cells
+/// that share one only make worse guesses. Relaxed order is enough, as a guess stands for itself.
+class GuessMemory {
+ public:
+  explicit GuessMemory(const MeshSurface& surface)
+      : corner_(surface.bounds().min()),
+        per_metre_(kCells / std::max(1e-9, surface.bounds().sizes().maxCoeff())) {
+    for (std::atomic<int>& part : parts_) part.store(-1, std::memory_order_relaxed);
+  }
+  std::atomic<int>& at(const Segment& segment) {
+    const Vector3 place = per_metre_ * (segment.middle() - corner_);
+    std::uint32_t cell = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double held = std::max(-1000.0, std::min(place[i], 1000.0));
+      cell = cell * 73u + static_cast<std::uint32_t>(static_cast<int>(held + 1000.0));
+    }
+    return parts_[cell % parts_.size()];
+  }
+
+ private:
+  static constexpr double kCells = 32.0;  // across the mesh
+  const Vector3 corner_;
+  const double per_metre_;
+  std::array<std::atomic<int>, 1021> parts_;
+};
+
+/// Parts near recent segments, so that a query from almost the same place needs no search. No result depends
+/// on it either; a caller that finds an entry in use by another does without.
 ///
 /// Entries lie in sets by the 2 mm cells of both ends, four to a set. The set is locked by a flag while it is
-/// read or written, and no caller waits. A segment that has moved by kMaxMotion or more gets an entry without
-/// parts: gathering them pays only if it stays.
+/// read or written, and no caller waits. A segment that has moved by kMaxMotion or more gets an entry for its
+/// place alone, without parts: gathering them pays only if it stays.
 class NearMemory {
  public:
-  MeshNearest nearest(const MeshShape& shape, const Segment& segment, double range) {
+  /// Returns the nearest feature, from memory if possible, else by `search()`, whose result is stored if the
+  /// segment hardly moves.
+  template <typename Search>
+  MeshNearest nearest(const MeshShape& shape, const Segment& segment, double range, const Search& search) {
     Set& set = sets_[name_of(segment) % sets_.size()];
-    if (set.in_use.test_and_set(std::memory_order_acquire))
-      return MeshNearest(shape.surface, shape.tree, segment, range, -1);
+    if (set.in_use.test_and_set(std::memory_order_acquire)) return search();
     const Use use(set.in_use);
-    NearParts* entry = &set.entries[0];
-    for (NearParts& other : set.entries)
-      if (other.moved(segment) < entry->moved(segment)) entry = &other;
-    const double motion = entry->moved(segment);
-    if (motion < entry->margin) return MeshNearest(shape.surface, segment, range, *entry);
-    MeshNearest found(shape.surface, shape.tree, segment, range, entry->nearest);
-    if (motion >= kMaxMotion) entry = &set.entries[set.next = (set.next + 1) % set.entries.size()];
-    *entry = found.found() && motion < kMaxMotion ? found.near_parts(shape.tree) : NearParts{};
-    entry->start = segment.start, entry->end = segment.end(), entry->nearest = found.part();
+    NearParts* entry = nullptr;
+    double min_motion = 1e300;
+    for (NearParts& one : set.entries) {
+      const double moved = one.moved(segment);
+      if (moved < min_motion) min_motion = moved, entry = &one;
+    }
+    if (min_motion < entry->margin) return MeshNearest(shape.surface, segment, range, *entry);
+    MeshNearest found = search();
+    const bool stays = min_motion < kMaxMotion;
+    if (!stays) entry = &set.entries[set.next = (set.next + 1) % set.entries.size()];
+    *entry = stays && found.found() ? found.near_parts(shape.tree) : NearParts{};
+    entry->start = segment.start, entry->end = segment.end();
     return found;
   }
 
@@ -86,7 +119,7 @@ class NearMemory {
 /// A mesh of parts is their union. Outside all of them one search through the tree of all faces finds the
 /// nearest feature. Inside, the depth is that in the part where it is deepest.
 struct MeshCollider::Impl {
-  explicit Impl(const TriangleMesh& mesh) : shape(mesh), parts(parts_of(mesh)) {
+  explicit Impl(const TriangleMesh& mesh) : shape(mesh), parts(parts_of(mesh)), guesses(shape.surface) {
     for (const MeshShape& part : parts)
       deepest = std::max(deepest, 0.5 * part.surface.bounds().sizes().minCoeff());
     search_cost = mean_search_cost();
@@ -94,7 +127,13 @@ struct MeshCollider::Impl {
 
   MeshNearest nearest(const MeshShape& of, const Segment& segment, double range) const {
     if (&of != &shape) return MeshNearest(of.surface, of.tree, segment, range, -1);
-    return memory.nearest(shape, segment, range);
+    return memory.nearest(shape, segment, range, [&] { return searched(segment, range); });
+  }
+  MeshNearest searched(const Segment& segment, double range) const {
+    std::atomic<int>& guess = guesses.at(segment);
+    MeshNearest search(shape.surface, shape.tree, segment, range, guess.load(std::memory_order_relaxed));
+    if (search.part() >= 0) guess.store(search.part(), std::memory_order_relaxed);
+    return search;
   }
   /// N.gap < 0 with the gap from the surface to the segment: the segment's nearest place is below the surface
   /// there (Baerentzen & Aanaes 2005).
@@ -116,6 +155,7 @@ struct MeshCollider::Impl {
   std::vector<MeshShape> parts;
   double deepest = 0.0;  // nothing within a part is farther from its surface [m]
   double search_cost = 1.0;
+  mutable GuessMemory guesses;
   mutable NearMemory memory;
 };
 

@@ -31,69 +31,103 @@ bool MeshNearest::is_all() const {
          surface_.is_support(nearest(), gap());
 }
 
-/// Branch and bound: a node has nothing within `limit` of the segment where its box is farther from the
-/// segment's. kRounding keeps parts at the limit itself.
+/// Branch and bound, the nearer child first: a node has nothing within `limit` of the segment where its box
+/// is farther from the segment's. kRounding keeps parts at the limit itself.
 template <typename Limit, typename See>
 void MeshNearest::visit(const MeshTree& tree, const Limit& limit, const See& see) const {
   constexpr double kRounding = 1e-12;  // [m]
-  const Vector3 middle = segment_.middle(), half = 0.5 * segment_.along.cwiseAbs();
-  double now = 0.0;
-  const auto squared_limit = [&] {
-    now = limit();
-    return (now + kRounding) * (now + kRounding);
+  struct Open {
+    int node;
+    double squared;  // from the node's box to the segment's
   };
-  tree.search([&](const MeshTree::Node& node) { return node.squared_gap(middle, half); }, squared_limit,
-              [&](const MeshTree::Node& node) { return !is_below(node, now); }, see);
+  const Vector3 middle = segment_.middle(), half = 0.5 * segment_.along.cwiseAbs();
+  const auto look = [&](int node) -> Open { return {node, tree.node(node).squared_gap(middle, half)}; };
+  std::array<Open, MeshTree::kMaxLevels> open;
+  std::size_t count = 0;
+  open[count++] = look(0);
+  while (count > 0) {
+    const Open next = open[--count];
+    const MeshTree::Node& node = tree.node(next.node);
+    const double limit_now = limit(), reach = limit_now + kRounding;
+    if (next.squared > reach * reach || is_below(node, limit_now)) continue;
+    for (int i = node.first; i < node.first + node.count; ++i) see(tree.part(i));
+    if (node.count > 0) continue;
+    const Open one = look(node.first), other = look(node.first + 1);
+    const bool one_first = one.squared <= other.squared;
+    open[count++] = one_first ? other : one;
+    open[count++] = one_first ? one : other;
+  }
 }
 
 /// The limit shrinks as nearer parts are found: it is evaluated at every node.
 void MeshNearest::search(const MeshTree& tree, double range) {
-  const auto counted_limit = [&] {
-    ++visits_;
-    return limit(range);
-  };
-  visit(tree, counted_limit, [&](int part) {
-    ++visits_;
-    measure(part, range);
-  });
+  visit(
+      tree,
+      [&] {
+        ++visits_;
+        return limit(range);
+      },
+      [&](int part) {
+        ++visits_;
+        measure(part, range);
+      });
 }
 
 /// Parts that may be the nearest one while the segment's ends have not moved by more than `margin`. A motion
-/// of s changes no distance by more than s. With d the nearest's distance and b a bound below which all parts
-/// are kept: the nearest is then no farther than d + s, and all others no nearer than b - s, so that margin =
-/// (b - d) / 2. A face counts from its inside or its edges, whichever is nearer. What exceeds the capacity
-/// brings b down.
+/// of s changes no distance by more than s. With d the nearest's distance and b that of the nearest part that
+/// is left out, margin = (b - d) / 2. A face that is nearest at its border comes with the edges there. Faces
+/// beyond the first 28 and edges beyond the nearest 12 bring b down.
 NearParts MeshNearest::near_parts(const MeshTree& tree) const {
+  constexpr std::size_t kEdgesKept = 12, kFacesKept = NearParts::kCapacity - kEdgesKept;
   constexpr double kMaxMargin = 1e-4, kRounding = 1e-9;
-  NearParts near;
-  std::array<double, NearParts::kCapacity> distances;
+  struct Near {
+    double distance;
+    int part;
+  };
+  std::array<Near, kEdgesKept + 1> edges;
+  std::array<Near, kFacesKept> faces;
+  std::size_t edge_count = 0, face_count = 0;
   double bound = nearest().distance + 2.0 * kMaxMargin;
-  const auto add = [&](int part, double distance) {
-    if (distance >= bound) return;
-    std::size_t place =
-        std::find(near.parts.begin(), near.parts.begin() + near.count, part) - near.parts.begin();
-    if (place < near.count) {
-      distances[place] = std::min(distances[place], distance);
-      return;
-    }
-    if (near.count == NearParts::kCapacity) {
-      place = std::max_element(distances.begin(), distances.end()) - distances.begin();
-      bound = std::max(distance, distances[place]);
-      if (distance == bound) return;
-    } else {
-      ++near.count;
-    }
-    near.parts[place] = part, distances[place] = distance;
+  const auto before = [](const Near& a, const Near& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.part < b.part;
   };
   visit(
       tree, [&] { return bound; },
       [&](int part) {
         if (is_too_far(part, bound)) return;
-        const double distance = measured(part).distance;
-        add(part, distance);
-        if (part < faces_) return;
-        for (const int face : surface_.edges()[part - faces_].faces) add(face, distance);
+        const bool is_face = part < faces_;
+        const SurfaceNearest now = measured(part);
+        if (now.distance >= bound) return;
+        if (is_face) {
+          if (face_count < kFacesKept) {
+            faces[face_count++] = {now.distance, part};
+          } else {
+            bound = std::min(bound, now.distance);
+          }
+          return;
+        }
+        std::size_t place = edge_count++;
+        for (; place > 0 && before({now.distance, part}, edges[place - 1]); --place)
+          edges[place] = edges[place - 1];
+        edges[place] = {now.distance, part};
+        if (edge_count > kEdgesKept) bound = edges[--edge_count].distance;
       });
+  NearParts near;
+  const auto add = [&](int part) {
+    const auto end = near.parts.begin() + near.count;
+    if (std::find(near.parts.begin(), end, part) != end) return;
+    if (near.count < NearParts::kCapacity) near.parts[near.count] = part;
+    ++near.count;
+  };
+  std::sort(faces.begin(), faces.begin() + face_count, before);
+  for (std::size_t i = 0; i < face_count; ++i)
+    if (faces[i].distance < bound) add(faces[i].part);
+  for (std::size_t i = 0; i < edge_count; ++i) {
+    if (edges[i].distance >= bound) continue;
+    add(edges[i].part);
+    for (const int face : surface_.edges()[edges[i].part - faces_].faces) add(face);
+  }
+  if (near.count > NearParts::kCapacity) return {};
   near.margin = std::max(0.0, 0.5 * (bound - nearest().distance) - kRounding);
   return near;
 }
@@ -274,7 +308,7 @@ ClosestFeatures leave_mesh(const Segment& segment, const MeshSurface& surface, c
                            int fallback, const ClosestFeatures* known) {
   ExitSearch search(segment, surface, known == nullptr ? -1e300 : known->distance);
   tree.search([&](const MeshTree::Node& node) { return search.cost(node); }, [&] { return search.limit(); },
-              [](const MeshTree::Node&) { return true; }, [&](int part) { search.see(part); });
+              [&](int part) { search.see(part); });
   if (known != nullptr && !search.found()) return *known;
   const ClosestFeatures best = search.result(fallback);
   return known != nullptr && known->distance > best.distance + kParallel ? *known : best;

@@ -15,7 +15,6 @@ struct NearParts {
   double margin = 0.0;  // [m]; 0: nothing is known
   std::array<int, kCapacity> parts;
   std::size_t count = 0;
-  int nearest = -1;  // part at those ends: where a search begins that finds the margin exceeded
 
   /// Larger distance of the segment's ends from the given ones.
   double moved(const Segment& segment) const {

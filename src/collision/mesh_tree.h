@@ -41,10 +41,23 @@ class MeshTree {
   /// i in first..first + count of a leaf: a face, or that many and an edge.
   int part(int i) const { return parts_[i]; }
 
-  /// Visits nodes with cost(node) <= limit() that `admits(node)`, the lesser cost first; `see(part)` the
-  /// parts of leaves. Of equal costs the first child comes first, so that the order is always the same.
-  template <typename Cost, typename Limit, typename Admits, typename See>
-  void search(const Cost& cost, const Limit& limit, const Admits& admits, const See& see) const {
+  /// Visits nodes that it `admits(node)`, always in the same order; `see(part)` the parts of leaves.
+  template <typename Admits, typename See>
+  void visit(const Admits& admits, const See& see) const {
+    std::array<int, kMaxLevels> open;
+    std::size_t count = 0;
+    open[count++] = 0;
+    while (count > 0) {
+      const Node& now = node(open[--count]);
+      if (!admits(now)) continue;
+      for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
+      if (now.count == 0) open[count++] = now.first + 1, open[count++] = now.first;
+    }
+  }
+
+  /// Visits nodes with cost(node) <= limit(), the lesser first; `see(part)` the parts of leaves.
+  template <typename Cost, typename Limit, typename See>
+  void search(const Cost& cost, const Limit& limit, const See& see) const {
     struct Open {
       int node;
       double cost;
@@ -54,19 +67,17 @@ class MeshTree {
     open[count++] = {0, cost(node(0))};
     while (count > 0) {
       const Open next = open[--count];
+      if (next.cost > limit()) continue;
       const Node& now = node(next.node);
-      if (next.cost > limit() || !admits(now)) continue;
-      for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
-      if (now.count > 0) continue;
+      if (now.count > 0) {
+        for (int i = now.first; i < now.first + now.count; ++i) see(part(i));
+        continue;
+      }
       Open near{now.first, cost(node(now.first))}, far{now.first + 1, cost(node(now.first + 1))};
       if (far.cost < near.cost) std::swap(near, far);
-      open[count++] = far, open[count++] = near;
+      if (far.cost <= limit()) open[count++] = far;
+      if (near.cost <= limit()) open[count++] = near;
     }
-  }
-  /// The same for all nodes that `admits(node)`.
-  template <typename Admits, typename See>
-  void visit(const Admits& admits, const See& see) const {
-    search([](const Node&) { return 0.0; }, [] { return 0.0; }, admits, see);
   }
 
  private:
