@@ -106,7 +106,7 @@ Arguments arguments_of(const std::vector<std::string>& words) {
   CommandLine line;
   line.flag("--quick", arguments.quick)
       .each("--model", "NAME",
-            [&](const Given& given) { arguments.models.push_back(given.one_of(model_names())); })
+            [&](const OptionValue& given) { arguments.models.push_back(given.one_of(model_names())); })
       .once("--output", "DIR", arguments.folder);
   arguments.help = !line.read(words);
   if (!arguments.help && arguments.folder.empty()) throw UsageError("--output DIR is missing");

@@ -57,7 +57,7 @@ struct Arguments {
   std::vector<std::string> paths;                       ///< recordings, or folders with recordings
 };
 
-std::vector<Row> rows_of(const Given& given) {
+std::vector<Row> rows_of(const OptionValue& given) {
   const std::vector<Row> all = all_rows();
   std::vector<Row> rows;
   for (const std::string& name : text::split(given.text)) {
@@ -75,10 +75,10 @@ std::vector<Row> rows_of(const Given& given) {
 /// Seconds of a lead; empty for `clear`.
 std::optional<double> seconds_of(const std::string& lead) {
   if (lead == "clear") return std::nullopt;
-  return Given{"--lead", "LEAD,...", lead}.number(0.0, 10.0);
+  return OptionValue{"--lead", "LEAD,...", lead}.number(0.0, 10.0);
 }
 
-std::vector<std::string> leads_of(const Given& given) {
+std::vector<std::string> leads_of(const OptionValue& given) {
   const std::vector<std::string> leads = text::split(given.text);
   if (leads.empty()) given.refuse("seconds or 'clear', separated by commas");
   for (const std::string& lead : leads) seconds_of(lead);
@@ -91,20 +91,20 @@ std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
   CommandLine line;
   line.flag("--list", a.list).flag("--compare", a.compare);
   line.once("--output", "DIR", a.output).once("--arctic", "DIR", a.arctic);
-  line.once("--only", "ROW,...", [&](const Given& given) { a.rows = rows_of(given); });
-  line.once("--lead", "LEAD,...", [&](const Given& given) { a.leads = leads_of(given); });
+  line.once("--only", "ROW,...", [&](const OptionValue& given) { a.rows = rows_of(given); });
+  line.once("--lead", "LEAD,...", [&](const OptionValue& given) { a.leads = leads_of(given); });
   line.once("--noise", "RMS_MM",
-            [&](const Given& given) { a.disturbance.noise = 1e-3 * given.number(0.0, 50.0); });
-  line.once("--rate", "HZ", [&](const Given& given) { a.disturbance.rate = given.number(5.0, 1000.0); });
+            [&](const OptionValue& given) { a.disturbance.noise = 1e-3 * given.number(0.0, 50.0); });
+  line.once("--rate", "HZ", [&](const OptionValue& given) { a.disturbance.rate = given.number(5.0, 1000.0); });
   line.once("--seeds", "N",
-            [&](const Given& given) { a.seeds = static_cast<unsigned>(given.whole(1, 1000)); });
-  line.once("--jobs", "N", [&](const Given& given) { a.jobs = static_cast<unsigned>(given.whole(1, 64)); });
-  line.each("--engine", "FILE", [&](const Given& given) { a.engines.push_back(given.text); });
-  line.each("--set", "KEY=VALUE", [&](const Given& given) {
+            [&](const OptionValue& given) { a.seeds = static_cast<unsigned>(given.whole(1, 1000)); });
+  line.once("--jobs", "N", [&](const OptionValue& given) { a.jobs = static_cast<unsigned>(given.whole(1, 64)); });
+  line.each("--engine", "FILE", [&](const OptionValue& given) { a.engines.push_back(given.text); });
+  line.each("--set", "KEY=VALUE", [&](const OptionValue& given) {
     const auto [key, value] = given.setting();
     set_parameter(a.configuration, key, value);
   });
-  line.words([&](const Given& given) { a.paths.push_back(given.text); });
+  line.words([&](const OptionValue& given) { a.paths.push_back(given.text); });
   if (!line.read(words)) return std::nullopt;
   validate(a.configuration);
   if (a.paths.empty() && a.arctic.empty())

@@ -52,7 +52,7 @@ class LiveSimulation {
 
  private:
   std::vector<Event> events_if_left(const std::vector<std::size_t>& bodies) const;
-  void go_on_with(const Scene& scene, const Configuration& configuration);
+  void continue_with(const Scene& scene, const Configuration& configuration);
 
   std::unique_ptr<Simulation> simulation_;
 };

@@ -98,8 +98,8 @@ class Simulation {
   /// Stamp up to which bodies have been advanced, also between the steps of a frame.
   Nanoseconds time() const;
   void set_state(const SimulationState& state);
-  /// Continues from a simulation of another scene or configuration, by the names of bodies; see
-  /// scene_change.h. Call between frames.
+  /// Continues from a simulation of another scene or configuration, by the names of bodies. Call between
+  /// frames.
   void go_on_from(const Simulation& other);
 
  private:

@@ -40,8 +40,8 @@ struct StampCheck {
 
  private:
   StampVerdict take(Nanoseconds stamp, Nanoseconds since, StampVerdict verdict);
-  /// Returns the number of consecutive far-off frames, which are at most `longest` apart.
-  int note_stray(Nanoseconds stamp, Nanoseconds longest);
+  /// Returns the number of consecutive far-off frames, which are at most `max_interval` apart.
+  int note_stray(Nanoseconds stamp, Nanoseconds max_interval);
 };
 
 }  // namespace mrhi

@@ -11,6 +11,12 @@ namespace {
 /// Smallest cosine between the normals of contacts in one region (20 degrees).
 constexpr double kMinSameRegionCosine = 0.94;
 constexpr double kSameDepth = 1e-6;
+/// A corner this near to a side that it is not opposed to is flush with it [m].
+constexpr double kFlush = 1e-5;
+/// Such a corner is looked for in the face that it stands on no deeper than this [m].
+constexpr double kMaxExit = 0.002;
+/// Least cosine between the outward direction of a corner or an edge and the surface that it meets.
+constexpr double kMinOpposed = 0.2;
 /// Names in a byte: corners 0 to 99 and edges 100 to 127 of a in b, and from 128 on those of b in a.
 constexpr int kCornerNames = 100, kEdgeNames = 28, kFirstNameOfB = 128;
 /// Fraction of an edge at its ends that belongs to the corners: else one point would have two names.
@@ -23,17 +29,26 @@ constexpr std::size_t kSampledEdges = 24;
 struct Probe {
   Vector3 start, end;
   int name;
+  int part = -1;  // of a mesh, as MeshSurface numbers it
+  /// Outward normals of the faces that meet there; zero if there are fewer, or of a mesh.
+  std::array<Vector3, 3> normals{{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()}};
 
+  bool is_corner() const { return start == end; }
   static Probe corner(const Vector3& place, int number) { return {place, place, number % kCornerNames}; }
   static Probe edge(const Vector3& start, const Vector3& end, int number) {
     return {start, end, kCornerNames + number % kEdgeNames};
   }
+  Probe facing(const Vector3& first, const Vector3& second, const Vector3& third = Vector3::Zero()) const {
+    return {start, end, name, part, {{first, second, third}}};
+  }
+  Probe of_mesh(int number) const { return {start, end, name, number, normals}; }
 };
 
 struct ProbeContact {
   Vector3 point, normal;
   double depth;
   std::uint8_t feature;
+  bool flush = false;  // beside a surface that it does not face: carries nothing if anything else does
 };
 
 /// Measures corners and edges of one shape in the other. Normals point out of b, as a manifold's.
@@ -57,16 +72,79 @@ struct Probing {
     const Vector3 middle = 0.5 * (probe.start + probe.end);
     const double reach = other.bounding_radius + margin + 0.5 * (probe.end - probe.start).norm();
     if ((middle - other_pose.position).squaredNorm() > reach * reach) return std::nullopt;
-    const auto features =
-        search({other_pose.to_local(probe.start), other_pose.to_local(probe.end), 0.0}, margin);
+    auto features = search({other_pose.to_local(probe.start), other_pose.to_local(probe.end), 0.0}, margin);
     if (!features) return std::nullopt;
     // A part of the edge's length, not metres.
     const bool at_end = features->axis_parameter < kEndMargin || features->axis_parameter > 1.0 - kEndMargin;
-    if (probe.start != probe.end && at_end) return std::nullopt;
+    if (!probe.is_corner() && at_end) return std::nullopt;
+    const auto opposes = [&](const Vector3& normal) { return is_opposed(probe, normal); };
+    const bool closed = other.mesh == nullptr || other.mesh->shape().surface.closed();
+    bool flush = closed && features->distance < kFlush && !opposes(features->normal);
+    if (flush && probe.is_corner()) {
+      const Vector3 place = other_pose.to_local(probe.start);
+      const Vector3 inside = place - (kFlush + features->distance) * features->normal;
+      if (const auto exit = exit_by_face(place, inside, opposes)) features = exit, flush = false;
+    }
     const Vector3 normal = other_pose.orientation * features->normal;
     const Vector3 midway = features->point + 0.5 * features->distance * features->normal;
     return ProbeContact{other_pose * midway, other_is_b ? normal : Vector3(-normal), -features->distance,
-                        static_cast<std::uint8_t>(other_is_b ? probe.name : kFirstNameOfB + probe.name)};
+                        static_cast<std::uint8_t>(other_is_b ? probe.name : kFirstNameOfB + probe.name),
+                        flush};
+  }
+
+  /// True if a face beside the probe, or all of them together, look against the normal, which is in the other
+  /// shape's frame. Else the shapes lie side by side there, as the flush sides of two stacked cubes do: the
+  /// nearest surface of a corner of the upper one is the lower one's side, which carries nothing.
+  bool is_opposed(const Probe& probe, const Vector3& normal) const {
+    const Vector3 against = -(other_pose.orientation * normal);
+    if (of.mesh != nullptr) {
+      const MeshSurface& surface = of.mesh->shape().surface;
+      return !surface.closed() ||
+             surface.alignment(probe.part, pose.orientation.conjugate() * against) > kMinOpposed;
+    }
+    Vector3 sum = Vector3::Zero();
+    for (const Vector3& face : probe.normals) {
+      if (face.dot(against) > kMinOpposed) return true;
+      sum += face;
+    }
+    return sum.dot(against) > kMinOpposed * sum.norm() || sum.isZero(0.0);
+  }
+
+  /// The shortest way of a place in the other shape, or beside it, out by a face whose normal `admits`; in
+  /// its frame. `inside`: a place near it that is clear of the side.
+  template <typename Admits>
+  std::optional<ClosestFeatures> exit_by_face(const Vector3& place, const Vector3& inside,
+                                              const Admits& admits) const {
+    ClosestFeatures best{-kMaxExit, Vector3::Zero(), place, 0.5};
+    const auto take = [&](double separation, const Vector3& normal) {
+      if (separation <= best.distance || separation > kSameDepth || !admits(normal)) return;
+      best.distance = separation, best.normal = normal, best.point = place - separation * normal;
+    };
+    if (other.mesh != nullptr) {
+      const MeshShape& mesh = other.mesh->shape();
+      const MeshSurface& surface = mesh.surface;
+      const Segment segment({inside, inside, 0.0});
+      const auto may_be_shorter = [&](const MeshTree::Node& node) {
+        if (node.depth(segment) > kFlush - best.distance) return false;
+        return surface.convex() ||
+               (node.may_be_exit(segment) && node.distance(segment) <= kFlush - best.distance);
+      };
+      mesh.tree.visit(may_be_shorter, [&](int part) {
+        if (part >= static_cast<int>(surface.faces().size())) return;
+        const MeshSurface::Face& face = surface.faces()[part];
+        const Interval over = surface.over(face, segment, 0.5);
+        if (surface.convex() || over.s0 <= over.s1) take(face.normal.dot(place) - face.height, face.normal);
+      });
+      budget.spend(other.mesh->search_cost());
+    } else if (other.prism) {
+      const Prism prism(*other.prism, Pose());
+      for (int i = prism.first_flat(); i < 3; ++i)
+        for (const double side : {-1.0, 1.0}) take(side * place[i] - prism.half[i], side * Vector3::Unit(i));
+      const Vector3 across = prism.across(place);
+      if (prism.round && !across.isZero(0.0)) take(across.norm() - prism.half.x(), across.normalized());
+    }
+    if (best.normal.isZero(0.0)) return std::nullopt;
+    return best;
   }
 
   /// Upper bound of the depth of a node's parts: r - D, with the centre at the signed distance D and all
@@ -120,10 +198,16 @@ struct Probes {
         pose * std::visit([&](const auto& shape) { return shape.farthest(local); }, probing.of.shape), 0));
   }
   void of_straight(const Prism& prism) const {
-    for (int i = 0; i < kCorners; ++i) see(Probe::corner(prism.corner(i), i));
+    const auto face = [&](int axis, int corner) {
+      return Vector3(((corner >> axis & 1) != 0 ? 1.0 : -1.0) * prism.axes.col(axis));
+    };
+    for (int i = 0; i < kCorners; ++i)
+      see(Probe::corner(prism.corner(i), i).facing(face(0, i), face(1, i), face(2, i)));
     for (int i = 0; i < kEdges; ++i) {
       const auto [low, high] = edge_ends(i);
-      see(Probe::edge(prism.corner(low), prism.corner(high), i));
+      const int along = i / 4;
+      see(Probe::edge(prism.corner(low), prism.corner(high), i)
+              .facing(face((along + 1) % 3, low), face((along + 2) % 3, low)));
     }
   }
   /// Rims, and the side line that faces the other shape, as seen from the capsule inscribed in the cylinder.
@@ -131,8 +215,11 @@ struct Probes {
     for (const double side : {-1.0, 1.0}) {
       const FlatFace cap = face_towards(prism, side * prism.axis());
       int number = cap.corners[0];
-      for (const double angle : rim_angles(cap.half[0], {{0.0, 0.0}}))
-        see(Probe::corner(cap.on_circle(angle), number++));
+      for (const double angle : rim_angles(cap.half[0], {{0.0, 0.0}})) {
+        const Vector3 place = cap.on_circle(angle);
+        see(Probe::corner(place, number++)
+                .facing(side * prism.axis(), prism.across(place - prism.centre).normalized()));
+      }
     }
     const double radius = prism.half.x(), length = prism.half.z();
     const Vector3 inner = std::max(0.0, length - radius) * prism.axis();
@@ -140,9 +227,12 @@ struct Probes {
                                        probing.margin + radius + length);
     if (prism.across(facing).norm() < 0.01) return;
     const Line line = side_line(prism, facing);
-    see(Probe::corner(line.at(-line.half), 8));
-    see(Probe::corner(line.at(line.half), 9));
-    see(Probe::edge(line.at(-line.half), line.at(line.half), 0));
+    const Vector3 start = line.at(-line.half), end = line.at(line.half),
+                  out = prism.across(facing).normalized();
+    const Vector3 ahead = (end - start).normalized();
+    see(Probe::corner(start, 8).facing(out, -ahead));
+    see(Probe::corner(end, 9).facing(out, ahead));
+    see(Probe::edge(start, end, 0).facing(out, out));
   }
   /// A corner belongs to the first of its edges, so that it is tested once.
   void of_mesh(const MeshSurface& surface, int part) const {
@@ -150,9 +240,13 @@ struct Probes {
     if (index < 0) return;
     const MeshSurface::Edge& edge = surface.edges()[index];
     const Vector3 start = probing.pose * edge.start, end = probing.pose * Vector3(edge.start + edge.along);
-    if (surface.is_first_edge(index, edge.corners[0])) see(Probe::corner(start, edge.corners[0]));
-    if (surface.is_first_edge(index, edge.corners[1])) see(Probe::corner(end, edge.corners[1]));
-    see(Probe::edge(start, end, index));
+    const auto see_corner = [&](const Vector3& place, int corner) {
+      if (surface.is_first_edge(index, corner))
+        see(Probe::corner(place, corner).of_mesh(surface.number(SurfacePart::corner, corner)));
+    };
+    see_corner(start, edge.corners[0]);
+    see_corner(end, edge.corners[1]);
+    see(Probe::edge(start, end, index).of_mesh(part));
   }
 };
 
@@ -212,7 +306,7 @@ class ProbeContacts {
 
   /// Keeps all while they are few, later every 2^n-th.
   void remember(const ProbeContact& contact) {
-    if (contact.depth > deepest_.depth) deepest_ = contact;
+    note_deepest(contact);
     if (found_++ % stride_ != 0) return;
     if (kept_count_ == kMaxKept) {
       for (std::size_t i = 0; 2 * i < kept_count_; ++i) kept_[i] = kept_[2 * i];
@@ -231,16 +325,23 @@ class ProbeContacts {
         const MeshSurface::Edge& edge = edges[index];
         const Vector3 start = probing.pose * edge.start,
                       end = probing.pose * Vector3(edge.start + edge.along);
-        add_sample(probing, Probe::corner(start, edge.corners[0]));
-        add_sample(probing, Probe::edge(start, end, static_cast<int>(index)));
+        const MeshSurface& surface = probing.of.mesh->shape().surface;
+        const int number = static_cast<int>(index), corner = edge.corners[0];
+        add_sample(probing,
+                   Probe::corner(start, corner).of_mesh(surface.number(SurfacePart::corner, corner)));
+        add_sample(probing,
+                   Probe::edge(start, end, number).of_mesh(surface.number(SurfacePart::edge, number)));
       }
     }
   }
   void add_sample(const Probing& probing, const Probe& probe) {
     const auto contact = probing.find_contact(probe);
     if (!contact) return;
-    if (contact->depth > deepest_.depth) deepest_ = *contact;
+    note_deepest(*contact);
     kept_[kept_count_++] = *contact;
+  }
+  void note_deepest(const ProbeContact& contact) {
+    if (contact.flush != deepest_.flush ? deepest_.flush : contact.depth > deepest_.depth) deepest_ = contact;
   }
 
   /// Until the budget is exhausted.
@@ -263,7 +364,7 @@ class ProbeContacts {
   std::array<ProbeContact, kMaxKept + kSamples + 1> kept_;
   std::size_t kept_count_ = 0, count_ = 0;
   std::size_t found_ = 0, stride_ = 1;
-  ProbeContact deepest_{Vector3::Zero(), Vector3::UnitZ(), -1e300, 0};
+  ProbeContact deepest_{Vector3::Zero(), Vector3::UnitZ(), -1e300, 0, true};
   bool subset_ = false;
 };
 
@@ -337,12 +438,14 @@ void add_region(const ProbeContacts& contacts, const ProbeContact& deepest, int 
 Manifold chosen(const ProbeContacts& contacts, bool convex) {
   Manifold manifold;
   Names named{};
-  auto deepest = contacts.deepest(-1e300, [](const ProbeContact&) { return true; });
+  auto deepest = contacts.deepest(-1e300, [](const ProbeContact& contact) { return !contact.flush; });
+  if (!deepest) deepest = contacts.deepest(-1e300, [](const ProbeContact&) { return true; });
   for (int region = 0; deepest; ++region) {
     (region == 0 ? manifold.normal : manifold.other_normals[region - 1]) = deepest->normal;
     add_region(contacts, *deepest, region, named, manifold);
     if (convex || region + 1 == Manifold::kMaxRegions) break;
     deepest = contacts.deepest(0.0, [&](const ProbeContact& contact) {
+      if (contact.flush) return false;
       for (int k = 0; k <= region; ++k)
         if (contact.normal.dot(manifold.normal_of(k)) >= kMinSameRegionCosine) return false;
       return true;

@@ -265,6 +265,16 @@ Vector3 MeshSurface::outward(const SurfaceNearest& nearest) const {
   return normal[0] + normal[1];
 }
 
+double MeshSurface::alignment(int part, const Vector3& direction) const {
+  double largest = -1.0;
+  Vector3 sum = Vector3::Zero();
+  each_face_around(part, [&](int face) {
+    largest = std::max(largest, faces_[face].normal.dot(direction));
+    sum += faces_[face].normal;
+  });
+  return std::max(largest, sum.normalized().dot(direction));
+}
+
 /// Over a convex solid it is enough to look about the part itself: a face whose inside is nearest, from
 /// above; an edge with the gap between its faces' normals, gap.(along x n0) > 0 and gap.(n1 x along) > 0; a
 /// corner from which all edges go down, -along.gap > 0. Then the plane across the gap supports the solid

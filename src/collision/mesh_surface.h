@@ -91,10 +91,11 @@ class MeshSurface {
   }
   bool is_first_edge(int edge, int corner) const { return edges_at_[first_edge_[corner]] == edge; }
   /// Number of a part in a list of the faces, then the edges, then the corners.
-  int number(const SurfaceNearest& part) const {
+  int number(const SurfaceNearest& part) const { return number(part.part, part.index); }
+  int number(SurfacePart part, int index) const {
     const int faces = static_cast<int>(faces_.size());
-    if (part.part == SurfacePart::face) return part.index;
-    return faces + part.index + (part.part == SurfacePart::corner ? static_cast<int>(edges_.size()) : 0);
+    if (part == SurfacePart::face) return index;
+    return faces + index + (part == SurfacePart::corner ? static_cast<int>(edges_.size()) : 0);
   }
   /// Calls `see(corner)` for the corners around a face.
   template <typename See>
@@ -116,6 +117,9 @@ class MeshSurface {
 
   /// Outward normal, of any length, where the surface is nearest.
   Vector3 outward(const SurfaceNearest& nearest) const;
+  /// Largest cosine of the unit vector `direction` with the normals of the faces around a part, by its
+  /// number, and with their sum.
+  double alignment(int part, const Vector3& direction) const;
   /// True if the whole of a convex solid is below the plane through the nearest point, across `gap` (from
   /// there to the segment), and nothing but the part named is near that plane.
   bool is_support(const SurfaceNearest& nearest, const Vector3& gap) const;

@@ -32,24 +32,20 @@ struct ParameterEntry {
   std::optional<ParameterLimits> limits;  ///< of a number, or of each of several
 };
 
-// Value of a number: the number, or empty for the word that stands for its absence.
+/// Value of a number: the number, or empty for the word that stands for its absence.
 std::optional<double> number_in(double value) {
   return std::isinf(value) ? std::nullopt : std::make_optional(value);
-}
-std::optional<double> number_in(int value) {
-  return value;
 }
 std::optional<double> number_in(const std::optional<double>& value) {
   return value;
 }
-void set_number(const std::optional<double>& number, double& value) {
-  value = number.value_or(HandStrength::kUnlimited);
-}
-void set_number(const std::optional<double>& number, int& value) {
-  value = static_cast<int>(*number);
-}
-void set_number(const std::optional<double>& number, std::optional<double>& value) {
-  value = number;
+template <class Number>
+void set_number(const std::optional<double>& number, Number& value) {
+  if constexpr (std::is_same_v<Number, std::optional<double>>) {
+    value = number;
+  } else {
+    value = static_cast<Number>(number.value_or(HandStrength::kUnlimited));
+  }
 }
 
 /// Accessor of a parameter's storage: a member of a configuration, of its part, or of a part's part.
@@ -91,27 +87,26 @@ ParameterEntry number(const std::string& name, const std::string& unit, const Ra
           ParameterLimits{range.min, range.max, slider.min, slider.max}};
 }
 
+template <class T>
+struct NamedValue {
+  std::string name;
+  T value;
+};
+
 template <class T, class Access>
-ParameterEntry choice(const std::string& name, const std::vector<std::pair<std::string, T>>& choices,
-                      Access access) {
-  std::vector<std::string> words;
-  words.reserve(choices.size());
-  for (const auto& option : choices) words.push_back(option.first);
+ParameterEntry choice(const std::string& name, const std::vector<NamedValue<T>>& options, Access access) {
   return {name,
-          text::joined(words),
+          text::joined(text::names_of(options)),
           [=](Configuration& configuration, const YAML::Node& node) {
-            for (const auto& option : choices) {
-              if (!node.IsScalar() || node.Scalar() != option.first) continue;
-              access(configuration) = option.second;
-              return true;
-            }
-            return false;
+            const auto* const chosen = node.IsScalar() ? text::find_named(options, node.Scalar()) : nullptr;
+            if (chosen != nullptr) access(configuration) = chosen->value;
+            return chosen != nullptr;
           },
           [=](const Configuration& configuration) {
             const T& value = access(configuration);
-            return std::find_if(choices.begin(), choices.end(),
-                                [&](const auto& option) { return option.second == value; })
-                ->first;
+            return std::find_if(options.begin(), options.end(),
+                                [&](const auto& option) { return option.value == value; })
+                ->name;
           },
           {}};
 }
@@ -124,7 +119,8 @@ ParameterEntry on_or_off(const std::string& name, Access access) {
 bool assign_gravity(Configuration& configuration, const YAML::Node& node) {
   const bool of_the_scene = node.IsScalar() && node.Scalar() == "scene";
   const std::optional<Vector3> value = yaml_vector(node);
-  const bool in_limits = value && value->minCoeff() >= kGravity.min && value->maxCoeff() <= kGravity.max;
+  const bool in_limits =
+      value && kGravity.contains(value->minCoeff()) && kGravity.contains(value->maxCoeff());
   if (!in_limits && !of_the_scene) return false;
   configuration.gravity = value;
   return true;
@@ -138,10 +134,9 @@ std::string gravity_text(const Configuration& configuration) {
 template <class Kind, class Entry, class Access>
 ParameterEntry named_choice(const std::string& name, const std::vector<const Entry*>& entries,
                             Access access) {
-  std::vector<std::pair<std::string, Kind>> kinds;
-  kinds.reserve(entries.size());
+  std::vector<NamedValue<Kind>> kinds;
   for (const Entry* entry : entries) kinds.push_back({entry->name, {entry->name}});
-  return choice<Kind>(name, kinds, access);
+  return choice(name, kinds, access);
 }
 
 std::vector<ParameterEntry> members() {
@@ -209,19 +204,19 @@ std::vector<ParameterEntry> filter_parameters() {
 std::vector<ParameterEntry> material_parameters() {
   std::vector<ParameterEntry> entries;
   for (const MaterialField& field : material_fields()) {
-    const std::string name = std::string("material/") + field.name;
+    const auto add = [&](auto member, const Word& otherwise) {
+      entries.push_back(number(std::string("material/") + field.name, field.unit, field.range, field.slider,
+                               member, otherwise));
+    };
     if (field.value == &Material::stiffness) {
-      entries.push_back(number(name, field.unit, field.range, field.slider, of(&Configuration::stiffness),
-                               {"model", " for the contact model's own"}));
+      add(of(&Configuration::stiffness), {"model", " for the contact model's own"});
     } else {
-      entries.push_back(
-          number(name, field.unit, field.range, field.slider, of(&Configuration::material, field.value)));
+      add(of(&Configuration::material, field.value), {});
     }
   }
   return entries;
 }
 
-/// All parameters, sorted by name.
 const std::vector<ParameterEntry>& parameter_table() {
   static const std::vector<ParameterEntry> table = [] {
     std::vector<ParameterEntry> all;

@@ -26,7 +26,7 @@ double detent_stiffness(const Detents& detents) {
   return detents.force / (0.5 * min_spacing);
 }
 
-double place_of(const Detents& detents, std::size_t index) {
+double detent_position(const Detents& detents, std::size_t index) {
   return detents.at[std::min(index, detents.at.size() - 1)];
 }
 
@@ -99,22 +99,22 @@ JointChange note_place(const Joint& joint, JointState& state) {
 //
 // s is the anchor's distance. The spring with a force limit is dry friction like a god object's: it sticks to
 // an anchor, where a law of sign(v) would creep or chatter at rest.
-double JointLaw::Hold::force(double travel) const {
+double JointLaw::YieldingSpring::force(double travel) const {
   return std::clamp(elastic_force(travel), -max_force, max_force);
 }
-double JointLaw::Hold::slope(double travel) const {
+double JointLaw::YieldingSpring::slope(double travel) const {
   return std::abs(elastic_force(travel)) < max_force ? stiffness : 0.0;
 }
 // Potential of a spring that slips at `max_force`: a parabola, continued by a straight line (Huber's
 // function). E(q) = K q^2 / 2 up to F_max / K, and F_max (q - F_max / 2K) beyond; dE/d(h v) = -F.
-double JointLaw::Hold::energy(double travel) const {
+double JointLaw::YieldingSpring::energy(double travel) const {
   if (stiffness <= 0.0) return 0.0;
   const double size = std::abs(elastic_force(travel));
   return (size < max_force ? 0.5 * size * size : max_force * (size - 0.5 * max_force)) / stiffness;
 }
 // Distance of x+ beyond the limit: max(0, +-h v - clearance). K times this pushes the joint back, and never
 // pulls.
-double JointLaw::Stop::penetration(double travel) const {
+double JointLaw::LimitSpring::penetration(double travel) const {
   return std::max(0.0, sign * travel - clearance);
 }
 
@@ -127,28 +127,27 @@ double JointLaw::Stop::penetration(double travel) const {
 // Each term is evaluated at the end of the step, as contacts are: k and K add h k and h K to the slope, so no
 // stiffness requires a shorter step. K = kStopOverInertia * inertia / h^2.
 //
-// Of an existing violation of a limit, a step corrects only the fraction h / h_usual, at a rate as
+// Of an existing violation of a limit, a step corrects only the fraction h / h_regular, at a rate as
 // Baumgarte's (1972) method does. Correcting all of it in a short step would cause the velocity depth / h.
 // Detent and latch are those at the start of the step.
-void JointLaw::begin(const Joint& joint, const JointState& state, double inertia, double step, double usual) {
+void JointLaw::begin(const Joint& joint, const JointState& state, double inertia, double step,
+                     double regular_step) {
   step_ = step;
   limit_impulse_ = 0.0;
   constant_ = 0.0;
   linear_ = joint.damping;
-  // Evaluated at the end of the step, as contacts are: k (to - x - h v).
+  // k (to - x - h v)
   const auto spring = [&](double stiffness, double to) {
     constant_ += stiffness * (to - state.position);
     linear_ += stiffness * step;
   };
   if (joint.spring) spring(joint.spring->stiffness, joint.spring->rest);
-  if (joint.detents) spring(detent_stiffness(*joint.detents), place_of(*joint.detents, state.detent));
+  if (joint.detents) spring(detent_stiffness(*joint.detents), detent_position(*joint.detents, state.detent));
   stop_ = kStopOverInertia * inertia / (step * step);
   friction_ = latch_ = {};
   if (joint.friction > 0.0) friction_ = {stop_, state.anchor - state.position, joint.friction};
   if (joint.latch && state.latched) latch_ = {stop_, joint.latch->at - state.position, joint.latch->force};
-  // A violated limit is corrected as fast as in a regular step: correction within a much shorter one would
-  // throw the joint.
-  const auto corrected = [part = std::min(1.0, step / usual)](double left) {
+  const auto corrected = [part = std::min(1.0, step / regular_step)](double left) {
     return left < 0.0 ? part * left : left;
   };
   lower_ = {corrected(state.position - joint.lower), -1.0};
@@ -157,8 +156,8 @@ void JointLaw::begin(const Joint& joint, const JointState& state, double inertia
 
 // If false, the flight advances the joint without forces. A limit counts within twice the step's motion.
 bool JointLaw::acts(double speed) const {
-  constexpr double kNear = 1e-6;
-  const double threshold = 2.0 * step_ * speed + kNear;
+  constexpr double kLimitMargin = 1e-6;
+  const double threshold = 2.0 * step_ * speed + kLimitMargin;
   return linear_ > 0.0 || constant_ != 0.0 || friction_.stiffness > 0.0 || latch_.stiffness > 0.0 ||
          lower_.clearance < threshold || upper_.clearance < threshold;
 }

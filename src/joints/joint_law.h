@@ -11,9 +11,9 @@ namespace mrhi {
 /// Friction and latch have a force limit; up to it a held joint does not creep.
 class JointLaw {
  public:
-  /// `inertia`: the joint's diagonal entry of the mass matrix; `usual`: regular step, as the last one of a
-  /// frame may be shorter [s].
-  void begin(const Joint& joint, const JointState& state, double inertia, double step, double usual);
+  /// `inertia`: the joint's diagonal entry of the mass matrix; `regular_step`: the last step of
+  /// a frame may be shorter [s].
+  void begin(const Joint& joint, const JointState& state, double inertia, double step, double regular_step);
   /// Records the impulse of a limit in an impact of this step [N m s].
   void note_limit_impulse(double impulse) { limit_impulse_ += impulse; }
 
@@ -32,7 +32,7 @@ class JointLaw {
  private:
   /// A spring with a force limit, whose end moves with the joint: stiffness * (stretch - step *
   /// velocity).
-  struct Hold {
+  struct YieldingSpring {
     double stiffness = 0.0, stretch = 0.0, max_force = 0.0;
     double elastic_force(double travel) const { return stiffness * (stretch - travel); }
     double force(double travel) const;
@@ -40,14 +40,14 @@ class JointLaw {
     double energy(double travel) const;
   };
   /// A limit; its clearance is that of the position at the start of the step.
-  struct Stop {
+  struct LimitSpring {
     double clearance = Joint::kUnlimited, sign = 1.0;
     double penetration(double travel) const;
   };
 
   double constant_ = 0.0, linear_ = 0.0;  // force of springs and damping = constant - linear * velocity
-  Hold friction_, latch_;
-  Stop lower_, upper_;
+  YieldingSpring friction_, latch_;
+  LimitSpring lower_, upper_;
   double stop_ = 0.0;  // stiffness of limits and holds
   double limit_impulse_ = 0.0;
   double step_ = 0.0;

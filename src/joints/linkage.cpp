@@ -8,7 +8,7 @@
 namespace mrhi {
 namespace {
 
-int place_of(const Linkage& linkage, int body) {
+int index_of(const Linkage& linkage, int body) {
   const auto found = std::find_if(linkage.bodies.begin(), linkage.bodies.end(),
                                   [body](const LinkageBody& link) { return link.body == body; });
   return found == linkage.bodies.end() ? LinkageBody::kNone
@@ -18,7 +18,7 @@ int place_of(const Linkage& linkage, int body) {
 /// Returns the linkage of the body; a new one for a free body.
 Linkage& linkage_of(const Scene& scene, int body, std::vector<Linkage>& linkages) {
   for (Linkage& linkage : linkages) {
-    if (body >= 0 && place_of(linkage, body) != LinkageBody::kNone) return linkage;
+    if (body >= 0 && index_of(linkage, body) != LinkageBody::kNone) return linkage;
   }
   linkages.emplace_back();
   if (body >= 0 && !scene.bodies[body].fixed) linkages.back().bodies.push_back({body});
@@ -36,7 +36,7 @@ std::vector<Linkage> linkages_of(const Scene& scene) {
     const bool alone = joint.parent == Joint::kWorld || scene.bodies[joint.parent].fixed;
     Linkage& linkage = linkage_of(scene, alone ? LinkageBody::kNone : joint.parent, linkages);
     LinkageBody link{joint.child, static_cast<int>(j)};
-    link.parent = alone ? LinkageBody::kNone : place_of(linkage, joint.parent);
+    link.parent = alone ? LinkageBody::kNone : index_of(linkage, joint.parent);
     link.fixture = alone ? joint.parent : LinkageBody::kNone;
     linkage.bodies.push_back(link);
   }
@@ -51,7 +51,7 @@ LinkageMotion::LinkageMotion(const Scene& scene, const Linkage& linkage)
       factors_(linkage.unknowns()),
       composites_(linkage.bodies.size()),
       impulses_(linkage.bodies.size()),
-      carried_(linkage.bodies.size()) {
+      subtrees_(linkage.bodies.size()) {
   for (int i = 0; i < size(); ++i) total_mass_ += body(i).mass;
 }
 
@@ -219,18 +219,18 @@ void LinkageMotion::find_rates(const Vector3& gravity, Vector& rates) {
     const Placed& placed = placed_[i];
     const double mass = body(i).mass;
     const Vector3 momentum = mass * placed.linear;
-    carried_[i] = {mass, momentum, placed.inertia * placed.angular + placed.pose.position.cross(momentum),
-                   mass * placed.pose.position};
+    subtrees_[i] = {mass, momentum, placed.inertia * placed.angular + placed.pose.position.cross(momentum),
+                    mass * placed.pose.position};
   }
   for (int i = size() - 1; i >= 0; --i) {
     const LinkageBody& link = linkage_.bodies[i];
-    const Carried& carried = carried_[i];
+    const Subtree& subtree = subtrees_[i];
     if (link.parent != LinkageBody::kNone) {
-      Carried& below = carried_[link.parent];
-      below.mass += carried.mass;
-      below.momentum += carried.momentum;
-      below.angular_momentum += carried.angular_momentum;
-      below.mass_moment += carried.mass_moment;
+      Subtree& below = subtrees_[link.parent];
+      below.mass += subtree.mass;
+      below.momentum += subtree.momentum;
+      below.angular_momentum += subtree.angular_momentum;
+      below.mass_moment += subtree.mass_moment;
     }
     if (link.joint == LinkageBody::kNone) continue;
     const Placed& placed = at(i);
@@ -241,11 +241,11 @@ void LinkageMotion::find_rates(const Vector3& gravity, Vector& rates) {
       velocity = parent.linear + parent.angular.cross(placed.origin - parent.pose.position);
     }
     const Vector3 &along = placed.unit.linear, &axis = placed.unit.angular;
-    const Vector3 about = carried.angular_momentum - placed.origin.cross(carried.momentum);
-    const Vector3 moment = (carried.mass_moment - carried.mass * placed.origin).cross(gravity);
-    const double by_axes = turning.cross(along).dot(carried.momentum) + turning.cross(axis).dot(about);
+    const Vector3 about = subtree.angular_momentum - placed.origin.cross(subtree.momentum);
+    const Vector3 moment = (subtree.mass_moment - subtree.mass * placed.origin).cross(gravity);
+    const double by_axes = turning.cross(along).dot(subtree.momentum) + turning.cross(axis).dot(about);
     rates[linkage_.column(i) - (linkage_.floats() ? 6 : 0)] =
-        by_axes + (carried.mass * along.dot(gravity) + axis.dot(moment - velocity.cross(carried.momentum)));
+        by_axes + (subtree.mass * along.dot(gravity) + axis.dot(moment - velocity.cross(subtree.momentum)));
   }
 }
 
@@ -259,8 +259,7 @@ void put_back(std::size_t body, const Scene& scene, SimulationState& state) {
   place(body, start_state(scene.bodies[body]), state);
   if (scene.bodies[body].flies) return;
   for (const Linkage& linkage : linkages_of(scene)) {
-    const auto is_it = [body](const LinkageBody& link) { return link.body == static_cast<int>(body); };
-    if (std::none_of(linkage.bodies.begin(), linkage.bodies.end(), is_it)) continue;
+    if (index_of(linkage, static_cast<int>(body)) == LinkageBody::kNone) continue;
     for (const LinkageBody& link : linkage.bodies) {
       const std::size_t b = link.body;
       if (b != body) place(b, start_state(scene.bodies[b]), state);

@@ -104,11 +104,11 @@ class LinkageMotion {
   };
   std::vector<Composite> composites_;
   std::vector<Impulse> impulses_;
-  struct Carried {  // by a joint, about the world's origin
+  struct Subtree {  // by a joint, about the world's origin
     double mass;
     Vector3 momentum, angular_momentum, mass_moment;
   };
-  std::vector<Carried> carried_;
+  std::vector<Subtree> subtrees_;
 };
 
 /// Resets a body to its start, with the whole linkage that contains it.
@@ -150,7 +150,8 @@ class LinkageFlight {
   double lock_joints();
   void keep_to_energy(const Vector3& gravity, double before);
   void advance(const Vector3& gravity, double seconds, int rounds);
-  static void go(const Point& from, double a, const Point& first, double b, const Point& second, Point& to);
+  static void add_rates(const Point& from, double a, const Point& first, double b, const Point& second,
+                        Point& to);
   static double distance(const Point& a, const Point& b);
   void advance_by_parts(const Vector3& gravity, double step);
   void fly_free(const Vector3& gravity, double step, std::vector<JointState>& joints,

@@ -93,8 +93,8 @@ double LinkageFlight::fastest() const {
   return rate;
 }
 
-void LinkageFlight::go(const Point& from, double a, const Point& first, double b, const Point& second,
-                       Point& to) {
+void LinkageFlight::add_rates(const Point& from, double a, const Point& first, double b, const Point& second,
+                              Point& to) {
   to.positions = from.positions + (a * first.positions + b * second.positions);
   to.momenta = from.momenta + (a * first.momenta + b * second.momenta);
   to.turn = from.turn + (a * first.turn + b * second.turn);
@@ -125,15 +125,15 @@ void LinkageFlight::advance(const Vector3& gravity, double seconds, int rounds) 
   double last = 1.0;
   for (int round = 0; round < rounds; ++round) {
     guess_ = two.point;
-    go(now_, 0.25 * seconds, one.rate, (0.25 - kThird) * seconds, two.rate, one.point);
-    go(now_, (0.25 + kThird) * seconds, one.rate, 0.25 * seconds, two.rate, two.point);
+    add_rates(now_, 0.25 * seconds, one.rate, (0.25 - kThird) * seconds, two.rate, one.point);
+    add_rates(now_, (0.25 + kThird) * seconds, one.rate, 0.25 * seconds, two.rate, two.point);
     const double change = round == 0 ? 1.0 : distance(guess_, two.point);
     if (change <= kConverged || (round > 8 && change >= last)) break;
     last = change;
     find_rate(one.point, gravity, one.rate);
     find_rate(two.point, gravity, two.rate);
   }
-  go(now_, 0.5 * seconds, one.rate, 0.5 * seconds, two.rate, next_);
+  add_rates(now_, 0.5 * seconds, one.rate, 0.5 * seconds, two.rate, next_);
   root_ = (rotation_by(next_.turn) * root_).normalized();
   next_.turn.setZero();
   std::swap(now_, next_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 
@@ -18,6 +19,15 @@ class DurationHistogram {
     ++bins_[std::min(bin, kBins - 1)];
     ++count_;
     max_ = std::max(max_, duration);
+  }
+  /// Adds the duration of `work`, unless that returns false. Returns what it does.
+  template <class Work>
+  bool measure(const Work& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    if (!work()) return false;
+    const auto time = std::chrono::steady_clock::now() - begin;
+    add(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
+    return true;
   }
   void clear() { *this = DurationHistogram(); }
 

@@ -119,8 +119,8 @@ int check(const std::vector<std::string>& words) {
   CommandLine line;
   line.once("--picture", "FILE.svg", picture);
   line.once("--density", "KG_PER_M3",
-            [&](const Given& given) { configuration.density = given.number(0.1, 1e5); });
-  line.words([&](const Given& given) { files.push_back(given.text); });
+            [&](const OptionValue& given) { configuration.density = given.number(0.1, 1e5); });
+  line.words([&](const OptionValue& given) { files.push_back(given.text); });
   if (!line.read(words)) return std::cout << kUsage, 0;
   if (files.empty()) throw UsageError("no scene is given; --help shows the usage");
   int status = 0;

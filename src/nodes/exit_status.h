@@ -15,8 +15,7 @@ inline void print_error(const std::string& program, const std::exception& error)
   std::cerr << program << ": " << text::one_line(error.what(), 4000) << std::endl;
 }
 
-/// Runs a program. Returns 0; or, with one line on stderr, 2 for a UsageError and 1 for another
-/// std::exception.
+/// Runs a program. Returns 0; or after one line on stderr, 2 for a UsageError, 1 for another exception.
 inline int exit_status(const std::string& program, const std::function<int()>& work) {
   try {
     return work();

@@ -9,8 +9,6 @@
 #include "mr_hand_interaction/ros/hand_tracking.h"
 #include "mr_hand_interaction/ros/interaction_server.h"
 
-namespace {
-
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction hand_interaction_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
 
@@ -18,10 +16,7 @@ Runs hand_tracking_node and interaction_node in one process; the launch files st
 parameters of both. The parameters of hand_tracking_node are in ~hand_tracking. See the --help of both.
 )";
 
-}  // namespace
-
-/// hand_tracking_node and interaction_node in one process and one thread: a call passes each frame on.
-/// Parameters of tracking are in ~hand_tracking.
+/// Both nodes share one thread: a call passes each frame on.
 int main(int argc, char** argv) {
   mrhi::NetworkThreadQueue queue;  // before the first node handle
   const auto body = [&queue](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {

@@ -2,8 +2,6 @@
 #include "../ros/node.h"
 #include "mr_hand_interaction/ros/hand_tracking.h"
 
-namespace {
-
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction hand_tracking_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
 
@@ -22,8 +20,6 @@ Subscribes to hand trackers, and publishes their hands in the world frame on han
   ~order         order of the joints, a name of docs/trackers.md; default none: recognised by the bone lengths
   ~scale         metres per unit of the tracker; default 1
 )";
-
-}  // namespace
 
 int main(int argc, char** argv) {
   mrhi::NetworkThreadQueue queue;  // before the first node handle

@@ -4,8 +4,6 @@
 #include "../ros/node.h"
 #include "mr_hand_interaction/ros/interaction_server.h"
 
-namespace {
-
 constexpr const char* kUsage =
     R"(usage: rosrun mr_hand_interaction interaction_node [_PARAMETER:=VALUE]... [TOPIC:=OTHER]...
 
@@ -22,8 +20,6 @@ Services: ~set, ~spawn, ~spawn_urdf, ~save, ~delete, ~reset, ~pause, ~restrain; 
   ~object_twist/NAME  [vx, vy, vz, wx, wy, wz] at the start
 and all parameters of config/default.yaml, such as _contact_model:=seed.
 )";
-
-}  // namespace
 
 int main(int argc, char** argv) {
   mrhi::NetworkThreadQueue queue;  // before the first node handle

@@ -9,6 +9,7 @@
 #include "../ros/input_statistics.h"
 #include "../ros/node.h"
 #include "../text/text.h"
+#include "../text/yaml.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/tracking/hand_merger.h"
@@ -33,14 +34,17 @@ const char* const kUnusable = "unusable hand";
 
 struct Parameters {
   explicit Parameters(const ros::NodeHandle& node) {
+    const std::string allowed = "a list of 2 to 8 topics with hand frames";
     NodeParameters known;
-    known.texts("inputs", 2, 8, "topics with hand frames", inputs);
+    known.add("inputs", allowed, [this](const std::string& name, const std::string& text) {
+      for (const YAML::Node& topic : load_yaml("parameter '" + name + "'", text))
+        inputs.push_back(yaml_text(topic));
+      return inputs.size() >= 2 && inputs.size() <= 8;
+    });
     known.choice<HandMerger::Mode>(
         "mode", {{"people", HandMerger::Mode::people}, {"fused", HandMerger::Mode::fused}}, mode);
     known.read(node);
-    if (inputs.empty())
-      throw ParameterError(
-          "parameter 'inputs' is missing; allowed: a list of 2 to 8 topics with hand frames");
+    if (inputs.empty()) throw ParameterError("parameter 'inputs' is missing; allowed: " + allowed);
   }
 
   std::vector<std::string> inputs;
@@ -49,7 +53,6 @@ struct Parameters {
 
 }  // namespace
 
-/// Merges the hand_frame topics of several hand_tracking_nodes into one.
 class HandMerging {
  public:
   HandMerging(ros::NodeHandle node, const ros::NodeHandle& private_node, const Parameters& parameters)

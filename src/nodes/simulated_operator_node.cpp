@@ -73,8 +73,7 @@ Task checked_task(const std::string& name) {
 
 }  // namespace
 
-/// A simulated operator performs the trials of a running training_node. It sees `objects` and
-/// `training/status`. During a trial its hand is on /leap_motion/leap_device, at default_device_mount().
+/// Sees `objects` and `training/status`. The hand is that of a Leap at default_device_mount().
 class OperatorPublisher {
  public:
   /// Throws an exception with the fault and what is allowed.
@@ -91,13 +90,9 @@ class OperatorPublisher {
       if (const Body body = body_of(object); body.fixed) fixed_[object.name] = body.start;
     }
     const auto hints = ros::TransportHints().tcpNoDelay();
-    subscribers_ = {
-        node.subscribe("objects", 1, &OperatorPublisher::take, this, hints),
-        node.subscribe<mr_hand_interaction::ContactArray>(
-            "contacts", 1,
-            [this](const mr_hand_interaction::ContactArray::ConstPtr& message) { contacts_ = *message; },
-            nullptr, hints),
-        node.subscribe("training/status", 10, &OperatorPublisher::take_status, this, hints)};
+    subscribers_ = {node.subscribe("objects", 1, &OperatorPublisher::take, this, hints),
+                    node.subscribe("contacts", 1, &OperatorPublisher::take_contacts, this, hints),
+                    node.subscribe("training/status", 10, &OperatorPublisher::take_status, this, hints)};
     timer_ = node.createSteadyTimer(ros::WallDuration(1.0 / rate_),
                                     [this](const ros::SteadyTimerEvent&) { tick(); });
   }
@@ -110,6 +105,7 @@ class OperatorPublisher {
     }
   }
 
+  void take_contacts(const mr_hand_interaction::ContactArray& message) { contacts_ = message; }
   void take_status(const mr_hand_interaction::TrainingStatus& status) { status_ = status; }
   void tick() {
     const ros::Time now = ros::Time::now();
@@ -120,7 +116,8 @@ class OperatorPublisher {
       object_.pose = to_message(fixed->second);
     }
     const bool other = person_ && trial_ != status_.trial;
-    if (!at_work() || other) {
+    const bool at_work = status_.phase == Status::RUNNING || status_.phase == Status::PAUSED;
+    if (!at_work || other) {
       person_.reset();
       hands_.clear();
       object_.name.clear();
@@ -136,8 +133,6 @@ class OperatorPublisher {
     noise_.apply(frame);
     publisher_.publish(frame);
   }
-
-  bool at_work() const { return status_.phase == Status::RUNNING || status_.phase == Status::PAUSED; }
 
   void begin() {
     trial_ = status_.trial;

@@ -42,10 +42,10 @@ struct Study {
   bool free_hands = false;
 };
 
-void read_operators(const Given& given, Study& study) {
+void read_operators(const OptionValue& given, Study& study) {
   const std::size_t dash = given.text.find('-');
   const auto part = [&](const std::string& text) {
-    return static_cast<int>(Given{given.option, given.form, text}.whole(1, kMaxCount));
+    return static_cast<int>(OptionValue{given.option, given.form, text}.whole(1, kMaxCount));
   };
   study.first = part(given.text.substr(0, dash));
   study.last = dash == std::string::npos ? study.first : part(given.text.substr(dash + 1));
@@ -57,15 +57,15 @@ std::optional<Study> read_arguments(const std::vector<std::string>& arguments) {
   Study study;
   CommandLine line;
   line.once("--output", "DIR", study.output).once("--task", "NAME|FILE", study.task);
-  line.once("--operators", "FIRST-LAST", [&](const Given& given) { read_operators(given, study); });
+  line.once("--operators", "FIRST-LAST", [&](const OptionValue& given) { read_operators(given, study); });
   line.once("--group-size", "N",
-            [&](const Given& given) { study.group_size = static_cast<int>(given.whole(0, kMaxCount)); });
-  line.each("--model", "NAME", [&](const Given& given) { study.models.push_back(given.text); });
+            [&](const OptionValue& given) { study.group_size = static_cast<int>(given.whole(0, kMaxCount)); });
+  line.each("--model", "NAME", [&](const OptionValue& given) { study.models.push_back(given.text); });
   line.each("--gravity", "G",
-            [&](const Given& given) { study.gravities.push_back(given.number(0.0, 10.0)); });
-  line.each("--set", "KEY=VALUE", [&](const Given& given) { study.settings.push_back(given.setting()); });
+            [&](const OptionValue& given) { study.gravities.push_back(given.number(0.0, 10.0)); });
+  line.each("--set", "KEY=VALUE", [&](const OptionValue& given) { study.settings.push_back(given.setting()); });
   line.once("--seed", "N",
-            [&](const Given& given) { study.seed = static_cast<std::uint64_t>(given.whole(0, kMaxCount)); });
+            [&](const OptionValue& given) { study.seed = static_cast<std::uint64_t>(given.whole(0, kMaxCount)); });
   line.flag("--free-hands", study.free_hands);
   if (!line.read(arguments)) return std::nullopt;
   if (study.output.empty()) throw UsageError("--output is missing: --output DIR");

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
-#include <stdexcept>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,8 +41,7 @@ a recording instead and needs no ROS master.
   ~reset    service that is called before each run; default none
 )";
 
-/// The motion of that name; grasp_object's is for the scene, a name or a URDF's path. Throws
-/// std::invalid_argument or SceneError.
+/// The motion of that name; `scene`: of grasp_object. Throws std::invalid_argument or SceneError.
 ScriptedMotion motion_for(const std::string& motion, const std::string& scene) {
   if (motion != "grasp_object") return make_motion(motion);
   return grasp_object(load_scene(find_scene_file(scene, scene_folders()), scene_options({})));
@@ -57,9 +55,9 @@ int write_recording(const std::vector<std::string>& arguments) {
   line.once("--csv", "FILE", file).once("--motion", "NAME", options.motion);
   line.once("--scene", "NAME|FILE", scene);
   line.once("--side", "left|right", options.side);
-  line.once("--rate", "HZ", [&](const Given& given) { options.rate = given.number(1.0, 1000.0); });
-  line.once("--noise", "AMPLITUDE", [&](const Given& given) { options.noise = given.number(0.0, 10.0); });
-  line.once("--seed", "N", [&](const Given& given) {
+  line.once("--rate", "HZ", [&](const OptionValue& given) { options.rate = given.number(1.0, 1000.0); });
+  line.once("--noise", "AMPLITUDE", [&](const OptionValue& given) { options.noise = given.number(0.0, 10.0); });
+  line.once("--seed", "N", [&](const OptionValue& given) {
     options.seed = static_cast<std::uint64_t>(given.whole(0, 1000000000));
   });
   if (!line.read(arguments)) {
@@ -68,10 +66,9 @@ int write_recording(const std::vector<std::string>& arguments) {
   }
   if (file.empty()) throw UsageError("--csv FILE is missing; see --help");
   const auto frames = record_motion(options, motion_for(options.motion, scene));
-  std::ofstream out = file_to_write(file);
-  write_recording_csv(out, frames);
-  out.flush();
-  if (!out) throw std::runtime_error("cannot write " + file);
+  std::ostringstream table;
+  write_recording_csv(table, frames);
+  write_file(file, table.str());
   return 0;
 }
 
@@ -91,8 +88,7 @@ struct Parameters {
 
 }  // namespace
 
-/// Publishes a scripted hand on /leap_motion/leap_device as the Leap driver would, on its own schedule.
-/// Before each run but the first it calls the std_srvs/Trigger service ~reset.
+/// Publishes the hand on its own schedule, and calls ~reset before each run but the first.
 class SyntheticHandPublisher {
  public:
   /// Throws std::invalid_argument with the fault and what is allowed.
@@ -103,12 +99,11 @@ class SyntheticHandPublisher {
         reset_service_(parameters.reset_service),
         publisher_(node_, parameters.options.rate) {}
 
-  /// Returns at shutdown, or after the first run if not looping. Starts with the first subscriber, or after
-  /// five seconds.
+  /// Starts with the first subscriber, or after five seconds. Returns at shutdown or after the last run.
   void run() {
     wait_for_listener();
     if (!ros::Time::waitForValid()) return;
-    looked_ = start_ = from_ros_time(ros::Time::now());
+    last_now_ = start_ = from_ros_time(ros::Time::now());
     for (int run = 0; node_.ok();) {
       if (hand_.next_run() != run) {
         if (!loop_) return;
@@ -136,14 +131,14 @@ class SyntheticHandPublisher {
 
   /// The run follows jumps of the clock in both directions: it neither catches up nor waits.
   void wait_for_next() {
-    constexpr Nanoseconds kLeap = 1'000'000'000, kLongestSleep = 50'000'000, kLookAtClock = 1'000'000;
-    const Nanoseconds longest = ros::Time::isSimTime() ? kLookAtClock : kLongestSleep;
+    constexpr Nanoseconds kMinJump = 1'000'000'000, kMaxSleep = 50'000'000, kSimTimeSleep = 1'000'000;
+    const Nanoseconds max_sleep = ros::Time::isSimTime() ? kSimTimeSleep : kMaxSleep;
     while (node_.ok()) {
-      const Nanoseconds now = from_ros_time(ros::Time::now()), passed = now - std::exchange(looked_, now);
-      if (std::abs(passed) > kLeap) start_ += passed;
+      const Nanoseconds now = from_ros_time(ros::Time::now()), passed = now - std::exchange(last_now_, now);
+      if (std::abs(passed) > kMinJump) start_ += passed;
       const Nanoseconds left = start_ + hand_.next_stamp() - now;
       if (left <= 0) return;
-      ros::WallDuration().fromNSec(std::min(left, longest)).sleep();
+      ros::WallDuration().fromNSec(std::min(left, max_sleep)).sleep();
     }
   }
 
@@ -158,7 +153,7 @@ class SyntheticHandPublisher {
   ros::NodeHandle node_;
   SyntheticHand hand_;
   bool loop_;
-  Nanoseconds start_ = 0, looked_ = 0;  // ROS times of the first run, and of the last look at the clock
+  Nanoseconds start_ = 0, last_now_ = 0;  // ROS times of the first run, and of the last clock reading
   std::string reset_service_;
   LeapHumanPublisher publisher_;
 };
@@ -173,7 +168,8 @@ int main(int argc, char** argv) {
       return mrhi::write_recording({arguments.begin() + 1, arguments.end()});
     });
   }
-  return mrhi::run_node(argc, argv, "synthetic_hand_node", [](const auto& node, const auto& private_node) {
+  const auto body = [](const auto& node, const auto& private_node) {
     mrhi::SyntheticHandPublisher(node, mrhi::Parameters(private_node)).run();
-  });
+  };
+  return mrhi::run_node(argc, argv, "synthetic_hand_node", mrhi::kUsage, body);
 }

@@ -48,10 +48,10 @@ all nodes that it needs. Publishes training/status and training/markers. Service
 )";
 
 constexpr int kQueue = 100;
-constexpr double kFresh = 0.1;       // older contacts are ignored [s]
-constexpr double kStartRoom = 0.02;  // distance from its start at which an object counts as placed [m]
-constexpr double kStartDelay = 0.5;  // time for which it may have moved before it is first seen [s]
-constexpr Nanoseconds kClocksApart = 1'000'000'000;  // more than any delay of a message
+constexpr double kMaxContactAge = 0.1;    // [s]
+constexpr double kStartTolerance = 0.02;  // distance from its start at which an object is placed [m, rad]
+constexpr double kStartDelay = 0.5;       // time for which it may have moved before it is first seen [s]
+constexpr Nanoseconds kMinClockOffset = 1'000'000'000;  // more than any delay of a message
 const ros::WallDuration kPeriod(1.0 / 20), kRetry(2.0);
 
 Nanoseconds now() {
@@ -63,13 +63,11 @@ Nanoseconds now() {
 /// Runs a session with the objects of an interaction_node, and shows its progress. One thread.
 class TrainingServer {
  public:
-  /// Throws SceneError for a task that cannot be loaded, std::invalid_argument for one that a simulated
-  /// operator cannot perform, SessionError for an unusable folder.
   TrainingServer(ros::NodeHandle node, ros::NodeHandle private_node, const TrainingParameters& parameters)
       : event_(node.advertise<msg::TrainingEvent>("training/events", kQueue)),
         session_(parameters.open_session(node, now(), [this](const EventRow& row) { publish(row); })),
         scene_(parameters.simulation, session_.task()),
-        parameters_(parameters.told_configuration(node, session_.task().gravity)),
+        parameters_(parameters.expected_configuration(node, session_.task().gravity)),
         participant_(parameters.header.participant),
         auto_next_(parameters.auto_next) {
     for (const std::string& note : session_.folder().notes()) ROS_WARN("%s", note.c_str());
@@ -98,36 +96,29 @@ class TrainingServer {
   }
 
  private:
-  void advertise_services(ros::NodeHandle& private_node) {
-    // roscpp continues after an exception in a service; a session that cannot be written must end the node.
-    const auto answer = [this](const auto& action, auto& response) {
-      std::string wrong = failed_;
+  void advertise_services(ros::NodeHandle& node) {
+    serve<std_srvs::Trigger>(node, "skip", [this](const auto&) { return skip(); });
+    serve<std_srvs::Trigger>(node, "repeat", [this](const auto&) { return repeat(); });
+    serve<std_srvs::Trigger>(node, "next", [this](const auto&) { return next(); });
+    serve<std_srvs::SetBool>(node, "pause", [this](const auto& request) { return pause(request.data); });
+  }
+
+  /// `action` returns an error, or an empty string. roscpp continues after an exception in a service; a
+  /// session that cannot be written must end the node.
+  template <class Service, class Action>
+  void serve(ros::NodeHandle& node, const char* name, const Action& action) {
+    services_.push_back(mrhi::serve<Service>(node, name, [this, action](const auto& request, auto& response) {
+      std::string error = failed_;
       try {
         session_.folder().check_there();
-        if (wrong.empty()) wrong = action();
-      } catch (const SessionError& error) {
-        wrong = failed_ = error.what();
+        if (error.empty()) error = action(request);
+      } catch (const SessionError& problem) {
+        error = failed_ = problem.what();
       }
-      response.success = wrong.empty();
-      response.message = wrong;
+      response.success = error.empty();
+      response.message = error;
       publish();
-      return true;
-    };
-    using std_srvs::SetBool;
-    using std_srvs::Trigger;
-    const auto offer = [&](const char* name, std::string (TrainingServer::*action)()) {
-      services_.push_back(private_node.advertiseService<Trigger::Request, Trigger::Response>(
-          name, [this, answer, action](Trigger::Request&, Trigger::Response& response) {
-            return answer([&] { return (this->*action)(); }, response);
-          }));
-    };
-    offer("skip", &TrainingServer::skip);
-    offer("repeat", &TrainingServer::repeat);
-    offer("next", &TrainingServer::next);
-    services_.push_back(private_node.advertiseService<SetBool::Request, SetBool::Response>(
-        "pause", [this, answer](SetBool::Request& request, SetBool::Response& response) {
-          return answer([&] { return pause(request.data); }, response);
-        }));
+    }));
   }
 
   void take(const msg::ObjectStateArray& message) {
@@ -159,12 +150,12 @@ class TrainingServer {
     const Scene& scene = model().scene;
     const Body& body = scene.bodies[model().body];
     if ((seen.pose.position - body.start.position).norm() >=
-        kStartRoom + kStartDelay * body.start_twist.linear.norm())
+        kStartTolerance + kStartDelay * body.start_twist.linear.norm())
       return false;
     if (seen.joints.size() != scene.joints.size()) return false;
     return std::all_of(seen.joints.begin(), seen.joints.end(), [&](const auto& joint) {
       const double start = scene.joints[*find_joint(scene, joint.first)].start;
-      return std::abs(joint.second - start) < kStartRoom;
+      return std::abs(joint.second - start) < kStartTolerance;
     });
   }
 
@@ -222,9 +213,9 @@ class TrainingServer {
 
   /// Converts a stamp of the machine with the hands, whose clock may differ.
   Nanoseconds on_our_clock(const ros::Time& stamp) {
-    const Nanoseconds apart = now() - from_ros_time(stamp);
-    if (std::abs(apart - clocks_apart_) > kClocksApart) clocks_apart_ = apart;
-    return from_ros_time(stamp) + clocks_apart_;
+    const Nanoseconds offset = now() - from_ros_time(stamp);
+    if (std::abs(offset - clock_offset_) > kMinClockOffset) clock_offset_ = offset;
+    return from_ros_time(stamp) + clock_offset_;
   }
 
   /// Observes the object and its descendants by joints; empty while it is absent.
@@ -249,13 +240,13 @@ class TrainingServer {
     for (std::size_t j = 0; j < std::min(joints_.name.size(), joints_.position.size()); ++j) {
       if (find_joint(scene, joints_.name[j])) seen.joints.emplace_back(joints_.name[j], joints_.position[j]);
     }
-    feel(message.header.stamp, parts, seen);
+    add_contacts(message.header.stamp, parts, seen);
     return seen;
   }
 
   /// Adds the hands' contacts with the object.
-  void feel(const ros::Time& stamp, const std::set<std::string>& parts, Observation& seen) const {
-    if (std::abs(seconds_between(contacts_.header.stamp, stamp)) > kFresh) return;
+  void add_contacts(const ros::Time& stamp, const std::set<std::string>& parts, Observation& seen) const {
+    if (std::abs(seconds_between(contacts_.header.stamp, stamp)) > kMaxContactAge) return;
     const auto touched = [&](const msg::Contact& contact) { return parts.count(contact.object) > 0; };
     seen.touched = std::any_of(contacts_.contacts.begin(), contacts_.contacts.end(), touched);
     seen.grip_force = grip_force(contacts_, parts);
@@ -385,7 +376,7 @@ class TrainingServer {
   bool paused_ = false;
   bool at_start_ = false;  ///< the running trial's object has been seen at its start
 
-  Nanoseconds clocks_apart_ = 0;  ///< this machine's clock minus that of the hands' stamps
+  Nanoseconds clock_offset_ = 0;  ///< this machine's clock minus that of the hands' stamps
   msg::ContactArray contacts_;
   sensor_msgs::JointState joints_;
   std::optional<msg::ObjectState> seen_;  ///< state of the watched body, if present

@@ -3,8 +3,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <stdexcept>
@@ -88,9 +86,9 @@ std::vector<double> numbers_in(const YAML::Node& node, std::size_t count) {
   std::vector<double> values;
   for (const YAML::Node& item : node) {
     const std::string text = item.IsScalar() ? item.Scalar() : "";
-    char* end = nullptr;
-    values.push_back(std::strtod(text.c_str(), &end));
-    if (text.empty() || *end != '\0') refuse("'" + text::one_line(text, 40) + "' is no number");
+    const auto value = text::to_number(text);
+    if (!value) refuse("'" + text::one_line(text, 40) + "' is no number");
+    values.push_back(*value);
   }
   return values;
 }
@@ -131,10 +129,9 @@ ObjectRequest request_in(const YAML::Node& node, const RecordedFiles& files) {
   return request;
 }
 
-/// Returns what `read` returns. Reports a part of the wrong form, such as a text instead of a map, in our
-/// words.
+/// Returns what `read` does. Reports YAML of the wrong form, such as a text instead of a map.
 template <class Read>
-auto in_form(const Read& read) {
+auto in_known_form(const Read& read) {
   try {
     return read();
   } catch (const YAML::Exception&) {
@@ -142,7 +139,7 @@ auto in_form(const Read& read) {
   }
 }
 
-struct Making {
+struct Applier {
   LiveSimulation& simulation;
 
   void operator()(const Spawn& spawn) const { simulation.add(spawn.prepared->part); }
@@ -154,7 +151,7 @@ struct Making {
   void operator()(const Pause&) const {}
 };
 
-struct InWords {
+struct TextWriter {
   std::string operator()(const Spawn& spawn) const { return "spawn '" + spawn.request.name + "'"; }
   std::string operator()(const Delete& remove) const { return "delete '" + remove.name + "'"; }
   std::string operator()(const SetParameters& set) const {
@@ -168,7 +165,7 @@ struct InWords {
   std::string operator()(const Pause& pause) const { return pause.on ? "pause" : "go on"; }
 };
 
-struct AsNode {
+struct YamlWriter {
   YAML::Node node;
 
   void operator()(const Spawn& spawn) { node["spawn"] = request_node(spawn.request); }
@@ -198,10 +195,6 @@ SetParameters values_in(const YAML::Node& node) {
   return set;
 }
 
-std::string text_of(const fs::path& file) {
-  return file_text(file.string(), kMaxFileBytes).value_or("");
-}
-
 /// A recorded name as a relative path, which leads to no folder above.
 fs::path path_below(const std::string& name) {
   fs::path path;
@@ -224,16 +217,6 @@ std::vector<std::string> roots_of(const Scene& part) {
   for (std::size_t body = 0; body < part.bodies.size(); ++body)
     if (hanging_on(body, part).size() == part.bodies.size()) roots.push_back(part.bodies[body].name);
   return roots;
-}
-
-Scene scene_of_files(const World& world, const SceneOptions& options, const std::string& folder) {
-  const RecordedFile* urdf = text::find_named(world.files, kUrdf);
-  if (urdf == nullptr) throw SceneError("the recording has no scene.urdf; allowed: one that has");
-  const fs::path file = fs::path(folder) / (world.scene + ".urdf");
-  write_file(file, urdf->bytes());
-  if (const RecordedFile* yaml = text::find_named(world.files, kYaml))
-    write_file(fs::path(folder) / (world.scene + ".yaml"), yaml->bytes());
-  return load_scene(file.string(), options);
 }
 
 }  // namespace
@@ -278,8 +261,8 @@ void prepare(Change& change, const SceneOptions& options) {
     spawn->prepared = std::make_shared<const PreparedSpawn>(spawn->request, options);
 }
 
-void make(const Change& change, LiveSimulation& simulation) {
-  std::visit(Making{simulation}, change);
+void apply_change(const Change& change, LiveSimulation& simulation) {
+  std::visit(Applier{simulation}, change);
 }
 
 std::vector<Event> events_ended_by(const Change& change, const LiveSimulation& simulation) {
@@ -289,13 +272,13 @@ std::vector<Event> events_ended_by(const Change& change, const LiveSimulation& s
 }
 
 std::string to_text(const Change& change) {
-  return std::visit(InWords{}, change);
+  return std::visit(TextWriter{}, change);
 }
 
 std::string to_yaml(const Change& change) {
-  AsNode as_node;
-  std::visit(as_node, change);
-  return YAML::Dump(as_node.node);
+  YamlWriter writer;
+  std::visit(writer, change);
+  return YAML::Dump(writer.node);
 }
 
 RecordedFiles files_of(const Change& change) {
@@ -309,7 +292,7 @@ RecordedFiles files_of(const Change& change) {
 Change change_from_yaml(const std::string& yaml, const RecordedFiles& files) {
   const YAML::Node node = recorded_yaml(yaml);
   if (!node.IsMap()) refuse("is no map");
-  return in_form([&]() -> Change {
+  return in_known_form([&]() -> Change {
     if (node["spawn"]) return Spawn{request_in(node["spawn"], files)};
     if (node["delete"]) return Delete{text_in(node, "delete")};
     if (node["set"]) return values_in(node["set"]);
@@ -326,9 +309,8 @@ World world_of_file(const std::string& urdf_file, const Scene& scene, const Conf
   World world;
   world.version = MR_HAND_INTERACTION_VERSION;
   world.scene = fs::path(urdf_file).stem().string();
-  world.files.push_back({kUrdf, text_of(urdf_file)});
-  const fs::path yaml = fs::path(urdf_file).replace_extension(".yaml");
-  if (fs::exists(yaml)) world.files.push_back({kYaml, text_of(yaml)});
+  const std::string yaml = fs::path(urdf_file).replace_extension(".yaml").string();
+  world.files = contents_of({{kUrdf, urdf_file}, {kYaml, yaml}});
   add_files(contents_of(scene.mesh_files), world);
   world.parameters = parameter_texts(configuration);
   return world;
@@ -372,7 +354,7 @@ std::string to_yaml(const World& world) {
 
 World world_from_yaml(const std::string& yaml, const RecordedFiles& files) {
   const YAML::Node node = recorded_yaml(yaml);
-  return in_form([&] {
+  return in_known_form([&] {
     World world;
     world.version = text_in(node, "version");
     world.scene = fs::path(text_in(node, "scene")).filename().string();
@@ -407,21 +389,22 @@ Configuration configuration_of(const World& world, std::vector<std::string>& unk
 Scene scene_of(const World& world, SceneOptions options, const std::string& folder) {
   options.gravity.reset();
   options.mesh_files = written_to(folder, world.files);
-  Scene scene = scene_of_files(world, options, folder);
+  const auto urdf = options.mesh_files.find(kUrdf);
+  if (urdf == options.mesh_files.end())
+    throw SceneError("the recording has no scene.urdf; allowed: one that has");
+  Scene scene = load_scene(urdf->second, options);
+  scene.name = world.scene;
   for (const auto& [name, twist] : world.twists) free_body(scene, name).start_twist = twist;
-  // A removed body that is not in the scene was added by a request.
-  std::vector<std::string> gone_since;
-  for (const std::string& name : world.removed) {
-    if (const std::optional<int> body = find_body(scene, name)) {
-      remove_body(*body, scene);
-    } else {
-      gone_since.push_back(name);
-    }
-  }
+  const auto remove = [&scene](const std::string& name) {
+    const std::optional<int> body = find_body(scene, name);
+    if (body) remove_body(*body, scene);
+    return body.has_value();
+  };
+  std::vector<std::string> of_requests;  // removed bodies that requests had added
+  for (const std::string& name : world.removed)
+    if (!remove(name)) of_requests.push_back(name);
   for (const Added& added : world.added) append(requested_scene(added.request, options), scene);
-  for (const std::string& name : gone_since) {
-    if (const std::optional<int> body = find_body(scene, name)) remove_body(*body, scene);
-  }
+  for (const std::string& name : of_requests) remove(name);
   for (const auto& [name, mode] : world.grasps) {
     if (const std::optional<int> body = find_body(scene, name))
       scene.bodies[*body].grasp = grasp_mode(mode).value_or(GraspMode::parameter);

@@ -37,8 +37,7 @@ RecordedFiles contents_of(const std::vector<SceneFile>& files);
 /// Writes `files` into `folder`, for SceneOptions::mesh_files. Other files there stay.
 std::map<std::string, std::string> written_to(const std::string& folder, const RecordedFiles& files);
 
-/// The bodies that a spawn adds, their meshes prepared for collision, and the files from which they were
-/// read.
+/// The bodies that a spawn adds, prepared for collision, and the files of their meshes.
 struct PreparedSpawn {
   PreparedSpawn(const ObjectRequest& request, const SceneOptions& options);
   PreparedSpawn(const PreparedSpawn&) = delete;
@@ -75,15 +74,12 @@ struct Pause {
 };
 using Change = std::variant<Spawn, Delete, SetParameters, PlaceObject, Restrain, Reset, Pause>;
 
-/// Prepares a spawn, before it is applied, recorded or written; other changes need nothing. Throws
-/// SceneError.
+/// Prepares a spawn before it is applied or recorded; other changes need nothing. Throws SceneError.
 void prepare(Change& change, const SceneOptions& options);
 
-/// Applies a change, in the node and in a replay alike. Throws as LiveSimulation does; then nothing has
-/// changed.
-void make(const Change& change, LiveSimulation& simulation);
-/// Events by which hands leave what a change deletes or resets, to be reported before make(). Throws
-/// likewise.
+/// Applies a change, or throws as LiveSimulation does; then nothing has changed.
+void apply_change(const Change& change, LiveSimulation& simulation);
+/// Events that deleting or resetting objects causes; report them before apply_change(). Throws likewise.
 std::vector<Event> events_ended_by(const Change& change, const LiveSimulation& simulation);
 
 /// Description for messages: "spawn 'box'".
@@ -96,14 +92,13 @@ RecordedFiles files_of(const Change& change);
 /// Throws std::invalid_argument with one line.
 Change change_from_yaml(const std::string& yaml, const RecordedFiles& files);
 
-/// A spawn, and the bodies with each of which all of it goes.
+/// A spawn. Deleting any of the bodies `roots` deletes all of it.
 struct Added {
   ObjectRequest request;
   std::vector<std::string> roots = {};
 };
 
-/// Initial scene and parameters of a simulation and all changes since: enough to build its scene again on
-/// another machine.
+/// Initial scene and parameters of a simulation and all changes since; another machine can rebuild it.
 struct World {
   std::string version;                            ///< of the package that ran it
   std::string scene;                              ///< its name
@@ -155,8 +150,11 @@ class Source {
   /// Returns the next item; empty at the end. Throws std::exception with one line if the rest cannot be read.
   virtual std::optional<Item> next() = 0;
   /// Number of messages read so far, and in all. The hands of a frame may be in separate messages.
-  virtual std::size_t position() const = 0;
-  virtual std::size_t size() const = 0;
+  std::size_t position() const { return position_; }
+  std::size_t size() const { return size_; }
+
+ protected:
+  std::size_t position_ = 0, size_ = 0;
 };
 
 /// The recorded inputs of a live simulation.

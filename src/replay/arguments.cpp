@@ -12,15 +12,15 @@
 namespace mrhi {
 namespace {
 
-constexpr double kShortestQuaternion = 1e-6;
+constexpr double kMinQuaternionNorm = 1e-6;
 constexpr const char* kCompareUsage =
     "--compare takes the folders of two runs, then --tolerance METRES,RADIANS or nothing";
 
-Pose pose(const Given& given, std::size_t first) {
+Pose pose(const OptionValue& given, std::size_t first) {
   const std::vector<double> v = given.numbers(first, 7);
   Quaternion orientation(v[6], v[3], v[4], v[5]);
   const double length = orientation.norm();
-  if (!std::isfinite(length) || length < kShortestQuaternion) given.fail("the quaternion has no direction");
+  if (!std::isfinite(length) || length < kMinQuaternionNorm) given.fail("the quaternion has no direction");
   orientation.coeffs() /= length;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!body_limits::kPlace.contains(v[i]))
@@ -29,35 +29,35 @@ Pose pose(const Given& given, std::size_t first) {
   return {{v[0], v[1], v[2]}, orientation};
 }
 
-Twist twist(const Given& given) {
+Twist twist(const OptionValue& given) {
   const std::vector<double> v = given.numbers(1, 6);
   return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
 }
 
-std::string object_name(const Given& given) {
+std::string object_name(const OptionValue& given) {
   const std::string name = text::split(given.text).front();
   if (name.empty()) given.fail("the object's name is missing");
   return name;
 }
 
-std::string order(const Given& given) {
+std::string order(const OptionValue& given) {
   return rethrown<UsageError, std::invalid_argument>(given.option + ": ",
                                                      [&] { return joint_order(given.text).name; });
 }
 
 /// `zero`: what 0 stands for where it is allowed, for messages.
-double rate(const Given& given, const std::string& zero = "") {
+double rate(const OptionValue& given, const std::string& zero = "") {
   const double rate = given.numbers(0, 1).front();
   if (!((rate == 0.0 && !zero.empty()) || (rate >= 1.0 && rate <= 1000.0)))
     given.fail("is no rate from 1 to 1000 Hz" + (zero.empty() ? "" : ", and not 0 for " + zero));
   return rate;
 }
 
-std::set<std::size_t> frame_numbers(const Given& given) {
+std::set<std::size_t> frame_numbers(const OptionValue& given) {
   constexpr long kMaxFrame = 1000000000;
   std::set<std::size_t> frames;
   for (const std::string& number : text::split(given.text))
-    frames.insert(static_cast<std::size_t>(Given{given.option, given.form, number}.whole(0, kMaxFrame)));
+    frames.insert(static_cast<std::size_t>(OptionValue{given.option, given.form, number}.whole(0, kMaxFrame)));
   return frames;
 }
 
@@ -68,7 +68,7 @@ bool ends_with(const std::string& text, const std::string& end) {
                     [](char wanted, unsigned char letter) { return std::tolower(letter) == wanted; });
 }
 
-std::string film(const Given& given) {
+std::string film(const OptionValue& given) {
   if (!ends_with(given.text, ".webp") && !ends_with(given.text, ".mp4"))
     given.fail("is no film; allowed: a file that ends in .webp or .mp4");
   return given.text;
@@ -79,25 +79,25 @@ CommandLine command_line(ReplayArguments& a, bool& compare) {
   line.flag("--compare", compare).flag("--explain", a.explain).flag("--serve", a.serve);
   line.once("--scene", "NAME|FILE", a.scene).once("--input", "FILE.bag|FILE.csv", a.input);
   line.once("--output", "DIR", a.output);
-  line.once("--topic", "TOPIC", [&a](const Given& given) { a.topic = given.text; });
-  line.once("--params", "FILE.yaml", [&a](const Given& given) { a.parameter_file = given.text; });
-  line.each("--set", "KEY=VALUE", [&a](const Given& given) { a.settings.push_back(given.setting()); });
-  line.once("--export", "HZ", [&a](const Given& given) { a.export_rate = rate(given, "the recording's"); });
-  line.once("--markers", "RATE", [&a](const Given& given) { a.marker_rate = rate(given); });
+  line.once("--topic", "TOPIC", [&a](const OptionValue& given) { a.topic = given.text; });
+  line.once("--params", "FILE.yaml", [&a](const OptionValue& given) { a.parameter_file = given.text; });
+  line.each("--set", "KEY=VALUE", [&a](const OptionValue& given) { a.settings.push_back(given.setting()); });
+  line.once("--export", "HZ", [&a](const OptionValue& given) { a.export_rate = rate(given, "the recording's"); });
+  line.once("--markers", "RATE", [&a](const OptionValue& given) { a.marker_rate = rate(given); });
   line.once("--marker-frames", "FRAME,FRAME,...",
-            [&a](const Given& given) { a.marker_frames = frame_numbers(given); });
-  line.once("--film", "FILE.webp|FILE.mp4", [&a](const Given& given) { a.film = film(given); });
+            [&a](const OptionValue& given) { a.marker_frames = frame_numbers(given); });
+  line.once("--film", "FILE.webp|FILE.mp4", [&a](const OptionValue& given) { a.film = film(given); });
   line.each("--object-pose", "NAME,x,y,z,qx,qy,qz,qw",
-            [&a](const Given& given) { a.object_poses.emplace_back(object_name(given), pose(given, 1)); });
+            [&a](const OptionValue& given) { a.object_poses.emplace_back(object_name(given), pose(given, 1)); });
   line.each("--object-twist", "NAME,vx,vy,vz,wx,wy,wz",
-            [&a](const Given& given) { a.object_twists.emplace_back(object_name(given), twist(given)); });
+            [&a](const OptionValue& given) { a.object_twists.emplace_back(object_name(given), twist(given)); });
   line.once("--hand-transform", "x,y,z,qx,qy,qz,qw",
-            [&a](const Given& given) { a.hand_transform = pose(given, 0); });
-  line.once("--hand-order", "NAME", [&a](const Given& given) { a.hands.order = order(given); });
-  line.once("--hand-scale", "FACTOR", [&a](const Given& given) { a.hands.scale = given.number(1e-6, 1e6); });
+            [&a](const OptionValue& given) { a.hand_transform = pose(given, 0); });
+  line.once("--hand-order", "NAME", [&a](const OptionValue& given) { a.hands.order = order(given); });
+  line.once("--hand-scale", "FACTOR", [&a](const OptionValue& given) { a.hands.scale = given.number(1e-6, 1e6); });
   for (const char* const side : {"left", "right", "both"}) {
     const std::string stands_for = std::string("hands/") + (side[0] == 'b' ? "" : side + std::string("/"));
-    line.once(std::string("--") + side, "TOPIC", [&a, stands_for](const Given& given) {
+    line.once(std::string("--") + side, "TOPIC", [&a, stands_for](const OptionValue& given) {
       a.hands.topics[given.text] = stands_for + "pose_array";
     });
   }

@@ -1,7 +1,6 @@
 #include "inputs.h"
 
 #include <mr_hand_interaction/HandFrame.h>
-#include <mr_hand_interaction/SimulationInput.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <tf2_msgs/TFMessage.h>
@@ -18,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "../ros/result_messages.h"
 #include "../ros/tracker_reader.h"
 #include "../text/files.h"
 #include "../text/text.h"
@@ -29,10 +29,10 @@ namespace mrhi {
 namespace {
 
 const char* const kLeapTopic = "/leap_motion/leap_device";
-const char* const kFirstOff = "first stamp of another clock";
+const char* const kFirstStampOff = "first stamp of another clock";
 const char* const kHandFrame = "mr_hand_interaction/HandFrame";
 
-const char* const kWhole = "; allowed: a whole bag (rosbag reindex or rosbag fix may save one)";
+const char* const kAllowedBag = "; allowed: a whole bag (rosbag reindex or rosbag fix may save one)";
 
 /// Reads every message, as a replay of all topics would.
 std::string read_all(const std::string& file) {
@@ -51,31 +51,28 @@ std::string read_all(const std::string& file) {
 /// cause of an error, and may end the process for a corrupt file. Throws BagError. Returns the file's name.
 const std::string& readable(const std::string& file) {
   constexpr std::size_t kMemory = std::size_t{2} << 30, kOutput = 1 << 16;
-  constexpr std::uintmax_t kSlowest = 5u << 19;  // bytes a second, compressed
+  constexpr std::uintmax_t kMinReadRate = 5u << 19;  // bytes a second, compressed
   const std::string why = why_unreadable(file);
   if (!why.empty()) throw BagError(file + ": " + why + "; allowed: a bag that may be read");
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   try {
-    const ChildLimits limits{120.0 + static_cast<double>(error ? 0 : size / kSlowest), kMemory, kOutput};
+    const ChildLimits limits{120.0 + static_cast<double>(error ? 0 : size / kMinReadRate), kMemory, kOutput};
     run_in_child(limits, [&file] { return read_all(file); });
   } catch (const std::runtime_error& problem) {
-    throw BagError(file + ": is corrupt: " + text::one_line(problem.what()) + kWhole);
+    throw BagError(file + ": is corrupt: " + text::one_line(problem.what()) + kAllowedBag);
   }
   return file;
 }
 
-/// Call within a handler. Rethrows an exception of the bag library as a BagError that names the file, and any
-/// other exception unchanged.
+/// Call in a handler. Rethrows errors of the bag library as a BagError, and all others unchanged.
 [[noreturn]] void refuse_bag(const std::string& file) {
   try {
     throw;
-  } catch (const rosbag::BagException& error) {
-    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kWhole);
   } catch (const ros::Exception& error) {
-    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kWhole);
+    throw BagError(file + ": is corrupt: " + text::one_line(error.what()) + kAllowedBag);
   } catch (const std::bad_alloc&) {
-    throw BagError(file + ": is corrupt: it asks for more memory than there is" + kWhole);
+    throw BagError(file + ": is corrupt: it asks for more memory than there is" + kAllowedBag);
   }
 }
 
@@ -132,18 +129,12 @@ SourceFrame refused(const std::string& reason, const std::string& detail) {
 const char* const kWorld = "world";
 const char* const kLeapFrame = "leap_hands";
 
-/// Error of a frame without a pose in world.
-class NoTransform : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Poses of trackers in world: the given one, or from the bag's /tf_static and /tf received before the hands.
-/// The Leap's frame has a default mount.
+/// Poses of trackers in world: that of the command line, or from the bag's /tf_static and /tf received before
+/// the hands. The Leap's frame has a default mount.
 class DeviceFrames {
  public:
   DeviceFrames(const rosbag::Bag& bag, const std::optional<Pose>& device_in_world)
-      : given_(device_in_world),
+      : device_in_world_(device_in_world),
         moving_(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf", "tf"})),
         next_(moving_.begin()) {
     rosbag::View fixed(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf_static", "tf_static"}));
@@ -151,28 +142,21 @@ class DeviceFrames {
       each_in(message, [&](const auto& transform) { transforms_.set_fixed(transform); });
   }
 
-  /// Pose of the tracker of hands that were recorded at `arrival`. Throws NoTransform.
+  /// Pose of the tracker of hands that were recorded at `arrival`. Throws tf2::TransformException.
   Pose pose(const std::string& frame_id, Nanoseconds stamp, const ros::Time& arrival) {
-    if (given_) return *given_;
+    if (device_in_world_) return *device_in_world_;
     for (; next_ != moving_.end() && next_->getTime() <= arrival; ++next_)
       each_in(*next_,
               [&](const auto& transform) { transforms_.set(transform, from_ros_time(next_->getTime())); });
-    if (transforms_.connects(kWorld, frame_id)) return place(frame_id, stamp);
+    if (transforms_.connects(kWorld, frame_id)) return transforms_.pose(kWorld, frame_id, stamp);
     if (without_slash(frame_id) == kLeapFrame) return default_device_mount();
-    throw NoTransform("frame '" + text::one_line(frame_id, 64) +
-                      "' has no transform to 'world'; allowed: one that the bag's /tf_static or /tf has, or "
-                      "--hand-transform");
+    throw tf2::LookupException(
+        "frame '" + text::one_line(frame_id, 64) +
+        "' has no transform to 'world'; allowed: one that the bag's /tf_static or /tf has, or "
+        "--hand-transform");
   }
 
  private:
-  Pose place(const std::string& frame_id, Nanoseconds stamp) const {
-    try {
-      return transforms_.pose(kWorld, frame_id, stamp);
-    } catch (const tf2::TransformException& error) {
-      throw NoTransform(text::one_line(error.what()));
-    }
-  }
-
   template <class See>
   static void each_in(const rosbag::MessageInstance& message, const See& see) {
     const auto transforms = message.instantiate<tf2_msgs::TFMessage>();
@@ -180,7 +164,7 @@ class DeviceFrames {
     for (const geometry_msgs::TransformStamped& transform : transforms->transforms) see(transform);
   }
 
-  std::optional<Pose> given_;
+  std::optional<Pose> device_in_world_;
   TransformMemory transforms_;
   rosbag::View moving_;
   rosbag::View::iterator next_;
@@ -205,14 +189,16 @@ class BagInput : public FrameSource {
         options_(of_hands),
         reader_({Side::right, options_.order, options_.scale}),
         devices_(bag_, device),
-        at_(view_.begin()) {}
+        at_(view_.begin()) {
+    size_ = view_.size();
+  }
 
   std::optional<SourceFrame> next() override try {
     SourceFrame waiting;
     for (look_ahead(); !ahead_.empty(); look_ahead()) {
       SourceFrame frame = with_faults(waiting, std::move(ahead_.front().second));
       ahead_.pop_front();
-      ++read_;
+      ++position_;
       if (!frame.waits) return frame;
       waiting = std::move(frame);
     }
@@ -223,14 +209,13 @@ class BagInput : public FrameSource {
   } catch (...) {
     refuse_bag(file_);
   }
-  std::size_t position() const override { return read_; }
-  std::size_t size() const override { return view_.size(); }
   std::string topic() const { return text::joined_or_none(topics_); }
 
  private:
   SourceFrame read_tracker(const rosbag::MessageInstance& message) {
-    auto arrived = TrackerReader::message_of(stands_for(message.getTopic()), message.getCallerId(), message,
-                                             message.getTime());
+    TrackerReader::Message arrived{stands_for(message.getTopic()), message.getCallerId(),
+                                   message.getDataType(),          message.getMD5Sum(),
+                                   serialised_bytes(message),      from_ros_time(message.getTime())};
     return reader_.read(std::move(arrived), [&](const std::string& frame_id, Nanoseconds stamp) {
       return devices_.pose(frame_id, stamp, message.getTime());
     });
@@ -260,15 +245,14 @@ class BagInput : public FrameSource {
       return message.getDataType() == kHandFrame ? read_hand_frame(message) : read_tracker(message);
     } catch (const ros::serialization::StreamOverrunException& error) {
       return refused("malformed", error.what());
-    } catch (const NoTransform& error) {
-      return refused("no transform", error.what());
+    } catch (const tf2::TransformException& error) {
+      return refused("no transform", text::one_line(error.what()));
     } catch (const std::invalid_argument& error) {
       return refused(JointsInput::kUnusable, error.what());
     }
   }
 
-  /// Reads ahead until the third message of a stream, which shows whether the first has a stamp of another
-  /// clock.
+  /// Reads on to the third message of a stream, which shows if the first has a stamp of another clock.
   void look_ahead() {
     constexpr std::size_t kMessages = 12;
     while (at_ != view_.end() && ahead_.size() < kMessages) {
@@ -278,8 +262,8 @@ class BagInput : public FrameSource {
       ++at_;
       const auto first =
           std::find_if(ahead_.begin(), ahead_.end(), [&](const auto& one) { return one.first == stream; });
-      if (frame.first_was_off && read_ + ahead_.size() < kMessages && first != ahead_.end())
-        first->second = refused(kFirstOff, "the first frame of " + stream);
+      if (frame.first_was_off && position_ + ahead_.size() < kMessages && first != ahead_.end())
+        first->second = refused(kFirstStampOff, "the first frame of " + stream);
       ahead_.emplace_back(stream, std::move(frame));
     }
   }
@@ -287,45 +271,15 @@ class BagInput : public FrameSource {
   std::string file_;
   rosbag::Bag bag_;
   std::set<std::string> topics_;
-  mutable rosbag::View view_;  // mutable: its size() is not const
+  rosbag::View view_;
   HandOptions options_;
   TrackerReader reader_;
   DeviceFrames devices_;
   rosbag::View::iterator at_;
   std::deque<std::pair<std::string, SourceFrame>> ahead_;  // with their streams
-  std::size_t read_ = 0;
 };
 
 using mr_hand_interaction::SimulationInput;
-
-std::string text_of(const std::vector<std::uint8_t>& bytes) {
-  return {bytes.begin(), bytes.end()};
-}
-
-LogEntry entry_of(const SimulationInput& message) {
-  LogEntry entry;
-  if (message.kind > SimulationInput::CHANGE)
-    throw std::invalid_argument("recorded input: kind is not known");
-  entry.kind = static_cast<LogEntry::Kind>(message.kind);
-  entry.run = message.run;
-  entry.sequence = message.sequence;
-  entry.stamp = from_ros_time(message.header.stamp);
-  entry.time = message.time;
-  entry.expected = message.expected;
-  entry.text = message.text;
-  for (const auto& file : message.files) entry.files.push_back({file.name, text_of(file.bytes)});
-  entry.state = text_of(message.state);
-  entry.state_hash = message.state_hash;
-  entry.lost = message.lost_by_queue;
-  if (entry.kind != LogEntry::Kind::frame) return entry;
-  try {
-    entry.hands = from_message(message.hands);
-    entry.hands->stamp = message.time;
-  } catch (const std::invalid_argument& error) {
-    entry.text = error.what();
-  }
-  return entry;
-}
 
 /// Entries by run and sequence. The bag's own order differs if recorded time goes back, as in a looping bag.
 class BagLog : public LogSource {
@@ -340,26 +294,24 @@ class BagLog : public LogSource {
       order_.emplace(std::make_tuple(run, input->sequence), message);
     }
     at_ = order_.begin();
+    size_ = order_.size();
   }
 
   std::optional<LogEntry> next() override try {
     if (at_ == order_.end()) return std::nullopt;
     const auto message = (at_++)->second.instantiate<SimulationInput>();
     ++position_;
-    return entry_of(*message);
+    return from_message(*message);
   } catch (...) {
     refuse_bag(file_);
   }
-  std::size_t position() const override { return position_; }
-  std::size_t size() const override { return order_.size(); }
 
  private:
   std::string file_;
   rosbag::Bag bag_;
-  mutable rosbag::View view_;  // whose size() is not const
+  rosbag::View view_;
   std::multimap<std::tuple<std::size_t, std::uint64_t>, rosbag::MessageInstance> order_;
   decltype(order_)::const_iterator at_;
-  std::size_t position_ = 0;
 };
 
 /// The topic of the log, or the reason why there is none.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -25,8 +25,6 @@ class CsvInput : public FrameSource {
   CsvInput(const std::string& file, const Pose& device_in_world, double scale);
 
   std::optional<SourceFrame> next() override;
-  std::size_t position() const override { return position_; }
-  std::size_t size() const override { return frames_.size(); }
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
@@ -34,7 +32,6 @@ class CsvInput : public FrameSource {
   std::vector<JointsFrame> frames_;
   Pose device_in_world_;
   JointsInput input_;
-  std::size_t position_ = 0;
 };
 
 /// An open recording, and the topic that is read from it.
@@ -67,21 +64,16 @@ class BagError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Writes the rendered view for viewers.
-class Pictures {
- public:
-  virtual ~Pictures() = default;
-  /// Call after each frame. The first call creates the file. Throws std::runtime_error that names the file if
-  /// it cannot be written.
-  virtual void watch(const Simulation& simulation) = 0;
-};
+/// Writes the rendered view of a frame. The first call creates the file. Throws std::runtime_error that names
+/// the file if it cannot be written.
+using ViewWriter = std::function<void(const Simulation& simulation)>;
 
-/// Into a bag. Either of chosen frames, by their numbers from 0: for each its number on /frame
+/// A ViewWriter to a bag. Either of chosen frames, by their numbers from 0: for each its number on /frame
 /// (std_msgs/UInt32), then its markers on /markers (visualization_msgs/MarkerArray), with all that is there.
 /// Or with a rate [Hz] of a whole run: /markers at that rate, as a live node sends them, and for every frame
 /// /scene (when it changes), /rendered_view, /rendered_hands, /tracked_hands, /objects and /contacts. Throws
 /// UsageError where this was built without ROS.
-std::unique_ptr<Pictures> marker_bag(const std::string& file, const std::optional<double>& rate,
-                                     const std::set<std::size_t>& frames);
+ViewWriter marker_bag(const std::string& file, const std::optional<double>& rate,
+                      const std::set<std::size_t>& frames);
 
 }  // namespace mrhi

@@ -51,15 +51,15 @@ void write_latched(rosbag::Bag& bag, const std::string& topic, const ros::Time& 
 }
 
 /// Properties of a body that a change may alter: name and both frictions.
-using Look = std::tuple<std::string, double, double>;
+using Appearance = std::tuple<std::string, double, double>;
 
-class MarkerBag : public Pictures {
+class MarkerBag {
  public:
   MarkerBag(const std::string& of_file, const std::optional<double>& at_rate,
             const std::set<std::size_t>& of_frames)
       : file_(of_file), frames_(of_frames), rate_(at_rate) {}
 
-  void watch(const Simulation& simulation) override try {
+  void write(const Simulation& simulation) try {
     if (!bag_.isOpen()) {
       check_may_be_written(file_);
       bag_.open(file_, rosbag::bagmode::Write);
@@ -83,11 +83,11 @@ class MarkerBag : public Pictures {
   void write_run(const Simulation& simulation) {
     const std_msgs::Header header = header_of(simulation);
     const FrameResult& result = simulation.result();
-    std::vector<Look> looks;
+    std::vector<Appearance> bodies;
     for (const Body& body : simulation.scene().bodies)
-      looks.emplace_back(body.name, body.material.static_friction, body.material.dynamic_friction);
-    if (!markers_ || looks != drawn_) {
-      drawn_ = std::move(looks);
+      bodies.emplace_back(body.name, body.material.static_friction, body.material.dynamic_friction);
+    if (!markers_ || bodies != drawn_) {
+      drawn_ = std::move(bodies);
       markers_ = std::make_unique<Markers>(simulation.scene(), simulation.configuration());
       write_latched(bag_, "/scene", header.stamp,
                     scene_message(simulation.scene(), simulation.configuration(), header));
@@ -112,16 +112,17 @@ class MarkerBag : public Pictures {
   std::optional<double> rate_;  ///< [Hz]; none: the frames alone
   std::size_t frame_ = 0;
   rosbag::Bag bag_;
-  std::vector<Look> drawn_;  ///< the scene that was last written
+  std::vector<Appearance> drawn_;  ///< the scene that was last written
   std::unique_ptr<Markers> markers_;
   ros::Time shown_;
 };
 
 }  // namespace
 
-std::unique_ptr<Pictures> marker_bag(const std::string& file, const std::optional<double>& rate,
-                                     const std::set<std::size_t>& frames) {
-  return std::make_unique<MarkerBag>(file, rate, frames);
+ViewWriter marker_bag(const std::string& file, const std::optional<double>& rate,
+                      const std::set<std::size_t>& frames) {
+  const auto bag = std::make_shared<MarkerBag>(file, rate, frames);
+  return [bag](const Simulation& simulation) { bag->write(simulation); };
 }
 
 }  // namespace mrhi

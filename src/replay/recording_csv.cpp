@@ -19,8 +19,7 @@ std::string plain(std::string cell) {
   return cell;
 }
 
-/// If cells are separated by semicolons or tabs, as in some locales' spreadsheets, a comma is the decimal
-/// point. A separator in quotes is text.
+/// Cells in quotes are text. With a separator other than the comma, a comma is the decimal point.
 std::vector<std::string> split(std::string line, char separator) {
   while (!line.empty() && (line.back() == '\r' || line.back() == '\n')) line.pop_back();
   std::vector<std::string> cells(1);
@@ -44,16 +43,16 @@ char separator_of(const std::string& header) {
   return ',';
 }
 
-constexpr double kLongestRecording = 1e9;  // [s]
+constexpr double kMaxDuration = 1e9;  // of a recording [s]
 
 /// The times of a table: from its own start, or Unix time in a unit that its first time shows.
 class TableTime {
  public:
   TableTime() = default;
   explicit TableTime(double first) {
-    if (!(first > kLongestRecording && first < 1e20)) return;
+    if (!(first > kMaxDuration && first < 1e20)) return;
     first_ = first;
-    while (unit_ + 1 < std::size(kUnits) && first * kUnits[unit_].seconds > kLatest) ++unit_;
+    while (unit_ + 1 < std::size(kUnits) && first * kUnits[unit_].seconds > kMaxUnixTime) ++unit_;
   }
 
   bool is_unix() const { return first_ != 0.0; }
@@ -67,7 +66,7 @@ class TableTime {
   };
   static constexpr Unit kUnits[] = {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
 
-  static constexpr double kLatest = 1e11;  // Unix time [s]: a larger one is of a smaller unit
+  static constexpr double kMaxUnixTime = 1e11;  // Unix time [s]: a larger one is of a smaller unit
 
   double first_ = 0.0;
   std::size_t unit_ = 0;
@@ -77,7 +76,7 @@ using FrameKey = std::pair<Nanoseconds, double>;  // stamp, and frame_id
 
 FrameKey read_key(const CsvColumns& row, const TableTime& times) {
   const double time = times.seconds(row.required("time_s"));
-  if (!(time >= 0.0 && time <= kLongestRecording))
+  if (!(time >= 0.0 && time <= kMaxDuration))
     row.fail("time_s", std::string("a time of 0 to 1e9 s is needed") +
                            (times.is_unix() ? ", counted from the first" : ""));
   return {std::llround(time * 1e9), row.number("frame_id").value_or(0.0)};
@@ -135,6 +134,18 @@ void require_no_utf16(const std::string& file, const std::string& line) {
   if (little || big)
     throw RecordingError(file + ": is in UTF-16; allowed: UTF-8, such as 'iconv -f UTF-16" +
                          (little ? "LE" : "BE") + " -t UTF-8' makes of it");
+}
+
+/// Reads the next row, or returns false. numpy writes its header as a comment.
+bool next_row(FileLines& lines, std::string& line, bool is_header) {
+  while (lines.next(line)) {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos) continue;
+    if (line[first] != '#') return true;
+    line.erase(0, first + 1);
+    if (is_header && line.find("time_s") != std::string::npos) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -198,23 +209,6 @@ void CsvColumns::fail(const std::string& column, const std::string& what) const 
   throw RecordingError(file_ + ":" + std::to_string(line_number_) + ": " + column + ": " + what);
 }
 
-namespace {
-
-/// Reads the next line that is not blank or a comment; false if there is none. numpy writes its header as a
-/// comment.
-bool next_row(FileLines& lines, std::string& line, bool is_header) {
-  while (lines.next(line)) {
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos) continue;
-    if (line[first] != '#') return true;
-    line.erase(0, first + 1);
-    if (is_header && line.find("time_s") != std::string::npos) return true;
-  }
-  return false;
-}
-
-}  // namespace
-
 std::vector<JointsFrame> read_recording_csv(const std::string& file, std::vector<std::string>* warnings) try {
   const auto warn = [warnings](const std::string& warning) {
     if (warnings != nullptr) warnings->push_back(warning);
@@ -253,7 +247,9 @@ std::vector<JointsFrame> read_recording_csv(const std::string& file, std::vector
 }
 
 CsvInput::CsvInput(const std::string& file, const Pose& device_in_world, double scale)
-    : frames_(read_recording_csv(file, &warnings_)), device_in_world_(device_in_world), input_(scale) {}
+    : frames_(read_recording_csv(file, &warnings_)), device_in_world_(device_in_world), input_(scale) {
+  size_ = frames_.size();
+}
 
 std::optional<SourceFrame> CsvInput::next() {
   if (position_ == frames_.size()) return std::nullopt;

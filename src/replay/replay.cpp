@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cinttypes>
-#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 
@@ -91,16 +90,16 @@ class Overrides {
  private:
   void take_scene(World& world) {
     const std::string file = scene_file(arguments_);
-    World given = world_of_file(file, load_scene(file, scene_options({})), Configuration());
+    World requested = world_of_file(file, load_scene(file, scene_options({})), Configuration());
     const auto same = [](const RecordedFile& a, const RecordedFile& b) {
       return a.name == b.name && a.bytes() == b.bytes();
     };
-    if (given.files.size() <= world.files.size() &&
-        std::equal(given.files.begin(), given.files.end(), world.files.begin(), same))
+    if (requested.files.size() <= world.files.size() &&
+        std::equal(requested.files.begin(), requested.files.end(), world.files.begin(), same))
       return;
-    given.parameters = world.parameters;
-    given.version = world.version;
-    world = given;
+    requested.parameters = world.parameters;
+    requested.version = world.version;
+    world = requested;
     other_scene_ = true;
     differing_.push_back("--scene " + arguments_.scene);
   }
@@ -235,16 +234,14 @@ class LogRun {
 
   void change(const LogEntry& entry) {
     Change change = change_from_yaml(entry.text, entry.files);
-    char time[32];
-    std::snprintf(time, sizeof time, "%.3f s: ", run_.seconds());
-    live().changes.push_back(time + text::one_line(to_text(change), 200));
+    live().changes.push_back(text::format("%.3f s: ", run_.seconds()) + text::one_line(to_text(change), 200));
     if (auto* set = std::get_if<SetParameters>(&change)) drop_overridden(*set);
     try {
       SceneOptions options = scene_options(simulation().configuration());
       options.mesh_files = written_to(files_folder(), entry.files);
       prepare(change, options);
       run_.events(events_ended_by(change, *simulation_), simulation());
-      make(change, *simulation_);
+      apply_change(change, *simulation_);
     } catch (const std::exception& error) {
       run_.reject("change", error.what());
     }
@@ -259,9 +256,8 @@ class LogRun {
 
   void compare(const LogEntry& entry) {
     const std::uint64_t here = hash(simulation().state());
-    char text[20];
-    std::snprintf(text, sizeof text, "%016" PRIx64, here);
-    hashes_->row(std::to_string(entry.sequence), std::to_string(entry.stamp), text);
+    hashes_->row(std::to_string(entry.sequence), std::to_string(entry.stamp),
+                 text::format("%016" PRIx64, here));
     if (broken_ || !overrides_.differing().empty()) return;
     ++live().compared;
     if (here == entry.state_hash) ++live().same;
@@ -303,17 +299,6 @@ void place(Scene& scene, const std::string& name, const Pose& pose) {
   body.start = pose;
 }
 
-/// Predicts the next stamp by the recorder's clock, as the node does for live frames.
-struct RecordersClock {
-  Nanoseconds last_stamp = 0;
-  std::optional<Nanoseconds> arrival;  // of the last frame
-
-  std::optional<Nanoseconds> expected(const std::optional<Nanoseconds>& now) const {
-    if (!arrival || !now) return std::nullopt;
-    return last_stamp + std::max<Nanoseconds>(0, *now - *arrival);
-  }
-};
-
 /// Of a file that ends in .bag or .csv.
 bool is_csv(const std::string& file) {
   return std::tolower(static_cast<unsigned char>(file.back())) == 'v';
@@ -329,8 +314,7 @@ ReplayInput open_input(const ReplayArguments& arguments) {
   return open_bag(arguments.input, arguments.topic, arguments.hand_transform, arguments.hands);
 }
 
-/// The log of the live simulation. It is not read if the arguments ask for other hands than the simulation
-/// took.
+/// The log, unless the arguments ask for other hands than the live simulation took.
 OpenLog open_log_of(const ReplayArguments& arguments) {
   OpenLog log;
   log.why_not = "it has hands alone";
@@ -368,7 +352,7 @@ Simulation prepare_simulation(const ReplayArguments& arguments) {
 }
 
 void run_frames(FrameSource& source, Simulation& simulation, ReplayRun& run) {
-  RecordersClock clock;
+  std::optional<Nanoseconds> arrival;  // of the last frame, by the recorder's clock
   while (const std::optional<SourceFrame> input = source.next()) {
     run.progress.show(source.position(), source.size());
     for (const auto& [kind, what] : input->corrected) run.correct(kind, what);
@@ -377,12 +361,15 @@ void run_frames(FrameSource& source, Simulation& simulation, ReplayRun& run) {
       continue;
     }
     const std::string which = "frame " + std::to_string(source.position()) + " of the input";
-    if (!run.frame(*input->frame, clock.expected(input->arrival), which, simulation)) continue;
+    std::optional<Nanoseconds> expected;  // stamp, as the node predicts it for live frames
+    if (arrival && input->arrival)
+      expected = simulation.result().stamp + std::max<Nanoseconds>(0, *input->arrival - *arrival);
+    if (!run.frame(*input->frame, expected, which, simulation)) continue;
     if (!input->left_out.empty() && run.summary.hands_left_out == 0)
       run.progress.line("replay: left out: " + input->left_out.front() +
                         " (more of the kind are counted only)");
     run.summary.hands_left_out += input->left_out.size();
-    clock = {simulation.result().stamp, input->arrival};
+    arrival = input->arrival;
   }
 }
 
@@ -390,7 +377,7 @@ void replay(const ReplayArguments& arguments) {
   const OpenLog log = open_log_of(arguments);
   if (log.source) return replay_log(arguments, *log.source, log.topic);
   if (arguments.scene.empty())
-    throw UsageError("--scene is missing: " + arguments.input + " does not tell it, as " + log.why_not +
+    throw UsageError("--scene is missing: " + arguments.input + " does not have it, as " + log.why_not +
                      "; --help shows the usage");
   Simulation simulation = prepare_simulation(arguments);
   const ReplayInput input = open_input(arguments);

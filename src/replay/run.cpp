@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
@@ -18,16 +17,6 @@ namespace {
 
 Vector3 gravity_of(const Simulation& simulation) {
   return simulation.configuration().gravity.value_or(simulation.scene().gravity);
-}
-
-/// Runs and times a step. False if no step is left in the frame.
-bool timed_step(Simulation& simulation, ReplaySummary& summary) {
-  const auto begin = std::chrono::steady_clock::now();
-  if (!simulation.step()) return false;
-  const auto time = std::chrono::steady_clock::now() - begin;
-  summary.step_time.add(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
-  ++summary.steps;
-  return true;
 }
 
 /// The outermost missing folder of a path; empty if all exist.
@@ -92,7 +81,7 @@ std::map<std::string, std::string> changed_parameters(const Configuration& confi
 }
 
 ReplayRun::ReplayRun(const ReplayArguments& arguments, const std::string& topic)
-    : output_(arguments.output), made_(first_missing(arguments.output)) {
+    : output_(arguments.output), created_folder_(first_missing(arguments.output)) {
   summary.input = arguments.input;
   summary.topic = topic;
   summary.arguments = arguments.repeatable;
@@ -122,8 +111,7 @@ bool ReplayRun::frame(const HandFrame& hands, const std::optional<Nanoseconds>& 
     reject(to_string(rejection), which);
     return false;
   }
-  while (timed_step(simulation, summary)) {
-  }
+  while (summary.step_time.measure([&] { return simulation.step(); })) ++summary.steps;
   for (const std::string& what : simulation.end().not_finite) reject("not finite", what);
   ++summary.frames;
   result(simulation);
@@ -133,7 +121,7 @@ bool ReplayRun::frame(const HandFrame& hands, const std::optional<Nanoseconds>& 
 void ReplayRun::result(const Simulation& simulation) {
   const FrameResult& result = simulation.result();
   writer_->write(result, simulation.state(), gravity_of(simulation));
-  if (markers_) markers_->watch(simulation);
+  if (markers_) markers_(simulation);
   summary.deepest_rendered = std::max(summary.deepest_rendered, simulation.deepest_rendered());
   count(result.events);
   if (result.restarted) ++summary.restarts;
@@ -152,13 +140,15 @@ void ReplayRun::count(const std::vector<Event>& events) {
 }
 
 void ReplayRun::reject(const std::string& reason, const std::string& detail) {
-  if (++summary.rejected[reason] > 1) return;
-  progress.line("replay: frame rejected: " + reason + ": " + detail + " (more of the kind are counted only)");
+  if (++summary.rejected[reason] == 1) first_of_kind("frame rejected: " + reason + ": " + detail);
 }
 
 void ReplayRun::correct(const std::string& kind, const std::string& detail) {
-  if (++summary.corrected[kind] > 1) return;
-  progress.line("replay: " + kind + ": " + detail + " (more of the kind are counted only)");
+  if (++summary.corrected[kind] == 1) first_of_kind(kind + ": " + detail);
+}
+
+void ReplayRun::first_of_kind(const std::string& text) {
+  progress.line("replay: " + text + " (more of the kind are counted only)");
 }
 
 void ReplayRun::check_end() {
@@ -181,10 +171,10 @@ void ReplayRun::check_end() {
 }
 
 void ReplayRun::end(const Simulation& simulation, const std::string& error) {
-  if (!error.empty() && summary.frames == 0 && !made_.empty()) {
+  if (!error.empty() && summary.frames == 0 && !created_folder_.empty()) {
     writer_.reset();
     std::error_code ignored;
-    std::filesystem::remove_all(made_, ignored);
+    std::filesystem::remove_all(created_folder_, ignored);
     return;
   }
   const Scene& scene = simulation.scene();
@@ -226,8 +216,6 @@ void ProgressBar::wipe() {
 }
 
 std::string to_json(const ReplaySummary& summary) {
-  char hash[17];
-  std::snprintf(hash, sizeof hash, "%016" PRIx64, summary.state_hash);
   const DurationHistogram& times = summary.step_time;
   Members fields{
       {"scene", summary.scene},
@@ -251,7 +239,7 @@ std::string to_json(const ReplaySummary& summary) {
       {"hands_left_out", summary.hands_left_out},
       {"events", summary.events},
       {"objects_held_at_end", summary.held_at_end},
-      {"state_hash", hash},
+      {"state_hash", text::format("%016" PRIx64, summary.state_hash)},
       {"not_known", summary.not_known}};
   if (summary.live) fields.emplace_back("live_run", json_of(*summary.live));
   fields.emplace_back("arguments", summary.arguments);

@@ -75,19 +75,16 @@ class ProgressBar {
   int percent_ = -1;
 };
 
-/// Base of replays of frames and of logs: processes frames, writes results and counts them. The summary is
-/// complete at any time, so that it can be written if reading fails.
+/// Processes frames, writes results and counts them. The summary is complete at any time.
 class ReplayRun {
  public:
   ReplayRun(const ReplayArguments& arguments, const std::string& topic);
 
-  /// Starts or restarts a run: creates the tables, and sets scene and parameters of the summary. Throws
-  /// std::runtime_error that names a file that cannot be written.
+  /// Starts or restarts a run. Throws std::runtime_error that names a file that cannot be written.
   void begin(const Simulation& simulation, const std::string& scene);
   /// The scene has changed.
   void follow(const Scene& scene) { writer_->follow(scene); }
-  /// Runs all steps of a frame and writes its result, or counts it as rejected. `which`: its place in the
-  /// recording, for messages.
+  /// Runs a frame and writes its result, or counts it as rejected. `which`: names it in messages.
   bool frame(const HandFrame& hands, const std::optional<Nanoseconds>& expected, const std::string& which,
              Simulation& simulation);
   /// Writes a result: of a frame, or of time without hands.
@@ -100,8 +97,7 @@ class ReplayRun {
   void correct(const std::string& kind, const std::string& detail);
   /// Throws std::runtime_error if no frame was accepted, or if the tables cannot be written.
   void check_end();
-  /// Writes summary.json. `error`: reason for an early end, or empty. If the run ended before its first
-  /// frame, removes the folders that it has created instead.
+  /// Writes summary.json, or removes what it has created if there was no frame. `error`: may be empty.
   void end(const Simulation& simulation, const std::string& error);
 
   bool writes_markers() const { return markers_ != nullptr; }
@@ -113,11 +109,12 @@ class ReplayRun {
 
  private:
   void count(const std::vector<Event>& events);
+  void first_of_kind(const std::string& text);
 
   std::string output_;
-  std::string made_;  ///< the outermost folder that this run has created; empty: none
+  std::string created_folder_;  ///< the outermost folder that this run has created; empty: none
   std::unique_ptr<ResultWriter> writer_;
-  std::unique_ptr<Pictures> markers_;
+  ViewWriter markers_;
   std::optional<Nanoseconds> first_stamp_, last_stamp_;
 };
 

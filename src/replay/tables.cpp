@@ -194,11 +194,11 @@ void ResultWriter::write_contacts(double time, const FrameResult& result, const 
     const Body& body = scene_->bodies[contact.key.body];
     const int capsule = contact.key.capsule;
     const FrictionUse use = friction_use(contact, body.material);
-    const double share = use.limit > 0.0 ? use.tangential / use.limit : 0.0;
+    const double utilisation = use.limit > 0.0 ? use.tangential / use.limit : 0.0;
     table(kContacts).row(time, body.name, hand_id(contact, state), finger_of(capsule), bone_of(capsule),
                          static_cast<int>(phase(contact)), contact.point, contact.normal, contact.depth,
                          contact.impulse, contact.force, finger_name(capsule), bone_name(capsule),
-                         phase_name(phase(contact)), use.normal, use.tangential, use.limit, share,
+                         phase_name(phase(contact)), use.normal, use.tangential, use.limit, utilisation,
                          contact.touching(), contact.friction != Friction::sticking, contact.patch, frame_,
                          contact.peak_force, contact.torque);
   }

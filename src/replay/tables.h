@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "../text/files.h"
+#include "../text/text.h"
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
@@ -21,18 +21,16 @@ struct Json {
 
   Json(const std::string& value) : text("\"") {
     for (const char c : value) {
-      char escaped[8];
-      std::snprintf(escaped, sizeof escaped, "\\u%04x", static_cast<unsigned char>(c));
+      const auto code = static_cast<unsigned char>(c);
       if (c == '"' || c == '\\') text += '\\';
-      text += static_cast<unsigned char>(c) < 0x20 ? std::string(escaped) : std::string(1, c);
+      text += code < 0x20 ? text::format("\\u%04x", code) : std::string(1, c);
     }
     text += '"';
   }
   Json(const char* value) : Json(std::string(value)) {}
   template <class Number, std::enable_if_t<std::is_arithmetic<Number>::value, int> = 0>
   Json(Number value) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "%.12g", static_cast<double>(value));
+    const std::string digits = text::format("%.12g", static_cast<double>(value));
     text = std::is_integral<Number>::value ? std::to_string(value) : std::isfinite(value) ? digits : "null";
   }
   Json(const Vector3& v) : Json(std::vector<double>{v.x(), v.y(), v.z()}) {}
@@ -79,8 +77,7 @@ std::string schema_json();
 /// Name of an event as in InteractionEvent.msg, e.g. GRASP_BEGIN.
 const char* event_name(EventKind kind);
 
-/// Writes the tables of a replay, a frame at a time; tables.txt has their columns. joints.csv is written only
-/// if the scene has joints.
+/// Writes the tables of tables.txt, a frame at a time; joints.csv only if the scene has joints.
 class ResultWriter {
  public:
   /// Creates the folder if it is missing. Throws std::runtime_error that names a file that cannot be written.

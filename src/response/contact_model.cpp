@@ -13,27 +13,26 @@ MRHI_ENTRIES(MRHI_DECLARE)
 
 namespace {
 
-/// A model of contacts with hands, followed by `implicit` for joints, and for contacts between objects unless
-/// the first model has them. A hand feels what is behind a pushed object one step later.
+/// A model of contacts with hands, followed by `implicit` for joints and for contacts between objects. The
+/// effect of what is behind an object reaches the hand one step later.
 class HandsThenRest : public ContactModel {
  public:
-  HandsThenRest(std::unique_ptr<ContactModel> hands, bool of_objects, std::unique_ptr<ContactModel> rest)
-      : hands_(std::move(hands)), of_objects_(of_objects), rest_(std::move(rest)) {}
+  HandsThenRest(std::unique_ptr<ContactModel> hands, std::unique_ptr<ContactModel> rest)
+      : hands_(std::move(hands)), rest_(std::move(rest)) {}
 
   void respond(ContactStep& step) override {
     const auto part = [&](std::vector<Contact>& contacts, std::vector<BodyContact>& body_contacts) {
       return ContactStep{step.scene,    step.gravity, step.step,    step.configuration, contacts,
                          body_contacts, step.bodies,  step.changes, no_grips_};
     };
-    ContactStep of_hands = part(step.contacts, of_objects_ ? step.body_contacts : no_body_contacts_);
+    ContactStep of_hands = part(step.contacts, no_body_contacts_);
     hands_->respond(of_hands);
-    ContactStep of_rest = part(no_contacts_, of_objects_ ? no_body_contacts_ : step.body_contacts);
+    ContactStep of_rest = part(no_contacts_, step.body_contacts);
     rest_->respond(of_rest);
   }
 
  private:
   std::unique_ptr<ContactModel> hands_;
-  bool of_objects_;
   std::unique_ptr<ContactModel> rest_;
   std::vector<Contact> no_contacts_;
   std::vector<BodyContact> no_body_contacts_;
@@ -64,8 +63,7 @@ std::unique_ptr<ContactModel> make_contact_model(const Configuration& configurat
   } else {
     rest = std::make_unique<ImplicitModel>();
   }
-  return std::make_unique<HandsThenRest>(model.make(configuration.contact), model.of_objects,
-                                         std::move(rest));
+  return std::make_unique<HandsThenRest>(model.make(configuration.contact), std::move(rest));
 }
 
 Material default_material(const Configuration& configuration) {

@@ -62,8 +62,8 @@ void add_mobility(double inverse_mass, const Matrix3& inverse_inertia, const Vec
 /// that the last t has left: t' = kept t + stretch_impulse + damping u.
 ///
 ///     along n:   p = k (d - e u),   u = u_0 + w p:     p = k / (1 + k e w) (d - e u_0),   u_0 = u - w p_last
-///     across:    t' = k (s + e (u + w t - w t')):      t' = (1 - give) t + give k (s + e u)
-///                give = 1 / (1 + k e w)
+///     across:    t' = k (s + e (u + w t - w t')):      t' = (1 - softening) t + softening k (s + e u)
+///                softening = 1 / (1 + k e w)
 ///
 /// k includes the step (N s/m). Signs differ because n points from b to a. The normal impulse on b is -p n,
 /// which separates the bodies; t is along the sliding, which it slows. Iterating t' = k (s + e u) with u by
@@ -95,14 +95,15 @@ PatchPoint make_point(double step, const SpringContact& row, const Mobility6& mo
   point.compliance = 1.0 / impulse;
   point.soft_stiffness = stiffness / (1.0 + impulse * point.normal_mobility);
   const double shear = step * spring.shear, drag = shear * point.ahead;
-  const double give = 1.0 / (1.0 + drag * tangential_mobility);
-  point.kept = 1.0 - give;
-  point.damping = give * drag;
-  point.stretch_impulse = (give * shear) * (patch.axes * vector(spring.stretch));
+  const double softening = 1.0 / (1.0 + drag * tangential_mobility);
+  point.kept = 1.0 - softening;
+  point.damping = softening * drag;
+  point.stretch_impulse = (softening * shear) * (patch.axes * vector(spring.stretch));
   return point;
 }
 
-/// Normal impulses p of a patch change its rates by W p, and springs give k (d - e u); k includes the step:
+/// Normal impulses p of a patch change its rates by W p, and springs apply k (d - e u); k includes
+/// the step:
 ///
 ///     (W + 1/(k e)) p = d / e - u_0,      W_ij = 1/m_a + 1/m_b + l_ai.I_a^-1 l_aj + l_bi.I_b^-1 l_bj,   l =
 ///     r x n
@@ -300,15 +301,15 @@ void ContactPatch::relax(double step, PatchPoint* points, const SpringContact* r
   return true;
 }
 
-// As friction, but about n: T' = T + give (k (theta + e w_n) - T) with give = 1 / (1 + k e n'I^-1 n), clamped
-// to 2/3 mu a p.
+// As friction, but about n: T' = T + softening (k (theta + e w_n) - T) with softening = 1 / (1 + k e n'I^-1
+// n), clamped to 2/3 mu a p.
 void ContactPatch::relax_twist(double step, const Spring& spring, PatchPoint& point, Motion6& motion,
                                Motion6& impulse) const {
   double& last = point.impulses[kTwist];
   const double stiffness = step * spring.twist_stiffness;
   const double limit = spring.patch_friction * point.impulses[kNormal];
-  const double give = 1.0 / (1.0 - stiffness * spring.ahead * by_twist[5]);
-  const double unlimited = last + give * (stiffness * (spring.twist + spring.ahead * motion[5]) - last);
+  const double softening = 1.0 / (1.0 - stiffness * spring.ahead * by_twist[5]);
+  const double unlimited = last + softening * (stiffness * (spring.twist + spring.ahead * motion[5]) - last);
   const double twist = std::max(-limit, std::min(unlimited, limit));
   motion += (twist - last) * by_twist;
   impulse[5] += twist - last;
@@ -317,7 +318,7 @@ void ContactPatch::relax_twist(double step, const Spring& spring, PatchPoint& po
 
 // Forces are impulses over the step. The trial force is that which
 // would keep the tangential spring from slipping: at the fixed point k q+ where the contact sticks. It
-// exceeds the limit where k q+ does, as t' - t = give (k q+ - t).
+// exceeds the limit where k q+ does, as t' - t = softening (k q+ - t).
 void ContactPatch::fill_response(double step, const PatchPoint& point, const Motion6& motion,
                                  SpringContact& row) const {
   const double normal = grips ? 0.0 : point.impulses[kNormal];

@@ -52,17 +52,17 @@ class StepChanges {
                      std::vector<BodyState>& bodies) const;
 
  private:
-  struct Struck {
+  struct Impacted {
     int body;
     Twist before;              // momenta before the impacts
     Twist sum, moment;         // of all impulses [N s], [N m s], and of each times its time
     double size, size_moment;  // sum of magnitudes, and of each times its time
   };
-  Struck& struck(int body, const BodyState& after);
+  Impacted& impacted(int body, const BodyState& after);
 
   std::vector<char> solved_;
-  std::vector<int> places_;  // by body: index in struck_, or -1
-  std::vector<Struck> struck_;
+  std::vector<int> places_;  // by body: index in impacted_, or -1
+  std::vector<Impacted> impacted_;
 };
 
 /// Input and output of a contact model in one step. Contacts are found at the poses of its start. respond()

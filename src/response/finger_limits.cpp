@@ -81,7 +81,7 @@ constexpr int kHandParts = kFingers + 1;  // fingers and palm
 bool is_palm(const ContactKey& key) {
   return key.capsule == kPalm;
 }
-double pressed_by(const Contact& contact) {
+double shared_depth(const Contact& contact) {
   return contact.ignored ? 0.0 : contact.share * std::max(contact.pressed(), 0.0);
 }
 
@@ -99,10 +99,10 @@ void share_strength(const HandStrength& hand, std::vector<Contact>& contacts) {
   const auto of = [&depths](const ContactKey& key) -> double& {
     return depths[key.hand][finger_of(key.capsule)];
   };
-  for (const Contact& contact : contacts) of(contact.key) += pressed_by(contact);
+  for (const Contact& contact : contacts) of(contact.key) += shared_depth(contact);
   for (Contact& contact : contacts) {
     const double together = of(contact.key), strength = is_palm(contact.key) ? hand.palm : hand.finger;
-    const double part = together > 0.0 ? pressed_by(contact) / together : 1.0;
+    const double part = together > 0.0 ? shared_depth(contact) / together : 1.0;
     contact.strength = part > 0.0 ? part * strength : strength;
     contact.inverse_mass = 1.0 / (is_palm(contact.key) ? hand.palm_mass : hand.finger_mass);
     contact.restitution = hand.restitution;

@@ -54,15 +54,14 @@ void GaussSeidelSolver::begin(const ContactStep& step, const Island& island,
     add_body(step.scene.bodies[body.body], step.bodies[body.body], step);
   bodies_.push_back({Motion6::Zero(), 0.0, Matrix3::Zero()});
   make_hand_rows(step, island, rows_);
-  for (std::size_t row = 0; row < rows_.size(); ++row) add_patch(row, 1);
   std::size_t row = 0;
   for (const IslandBody& body : island.bodies) {
     for (std::size_t i = body.first; i < body.last; ++i) {
-      if (step.contacts[i].ignored) continue;
-      start(patches_[row], row, last_forces[step.body_contacts.size() + i]);
-      ++row;
+      if (!step.contacts[i].ignored) add_patch(row++, 1, &last_forces[step.body_contacts.size() + i]);
     }
   }
+  const Vector3 none = Vector3::Zero();
+  while (row < rows_.size()) add_patch(row++, 1, &none);  // grips
   add_links(step, island);
 }
 
@@ -78,7 +77,7 @@ void GaussSeidelSolver::add_body(const Body& body, const BodyState& state, const
 /// Adds the pairs of shapes that had a force in the last step, or that close fast enough for one. Contacts
 /// are sorted, so those of a pair are adjacent.
 void GaussSeidelSolver::add_links(const ContactStep& step, const Island& island) {
-  for (const Link* link = island.links.begin(); link != island.links.end();) {
+  for (const IslandContact* link = island.links.begin(); link != island.links.end();) {
     const BodyContact& first = step.body_contacts[link->index];
     Range range{link->index, link->index};
     bool acted = false;
@@ -103,33 +102,31 @@ void GaussSeidelSolver::add_link(const ContactStep& step, const Range& range) {
     make_link_row(step, *island_, step.body_contacts[index], rows_.back());
     linked_.push_back(index);
   }
-  add_patch(first, static_cast<int>(range.last - range.first));
-  for (std::size_t i = first; i < rows_.size(); ++i)
-    start(patches_.back(), i, (*last_forces_)[range.first + i - first]);
+  add_patch(first, static_cast<int>(range.last - range.first), &(*last_forces_)[range.first]);
 }
 
-void GaussSeidelSolver::add_patch(std::size_t first, int count) {
+/// Adds the patch of the rows from `first` on, with the last step's forces as warm start.
+void GaussSeidelSolver::add_patch(std::size_t first, int count, const Vector3* forces) {
   patches_.push_back(make_patch(step_, rows_, first, count, bodies_, points_));
-}
-
-void GaussSeidelSolver::start(const ContactPatch& patch, std::size_t point, const Vector3& force) {
-  patch.start_from(force, step_, points_[point], body(patch.a), body(patch.b));
+  const ContactPatch& patch = patches_.back();
+  for (int i = 0; i < count; ++i)
+    patch.start_from(forces[i], step_, points_[first + i], body(patch.a), body(patch.b));
 }
 
 /// Returns the closing speed that the surfaces lack for a force [m/s].
 ///
 ///     missing = n.(c_a' - c_b') - d / e,      e the time that the spring looks ahead
 ///
-/// A force needs d+ = d - e n.u > 0. e differs between the two signs of d (look_ahead in spring_contact.cpp).
+/// A force needs d+ = d - e n.u > 0. e differs between the two signs of d (look_ahead()).
 double GaussSeidelSolver::missing_speed(const ContactStep& step, const Range& range) const {
   double min_speed = kMaxSpeed;
   for (std::size_t i = range.first; i < range.last; ++i) {
     const BodyContact& contact = step.body_contacts[i];
-    const Motion6& b = body(island_->place_of(contact.key.b)).motion;
-    const int number = island_->place_of(contact.key.a);
+    const Motion6& b = body(island_->number_of(contact.key.b)).motion;
+    const int number = island_->number_of(contact.key.a);
     const Motion6& a = number < 0 ? bodies_.back().motion : body(number).motion;
     const Vector3 velocity = velocity_at(a, contact.arm_a) - velocity_at(b, contact.arm_b);
-    const double ahead = contact.depth > 0.0 ? look_ahead(step_, step.configuration.damping) : step_;
+    const double ahead = look_ahead(step_, step.configuration.damping, contact.depth > 0.0);
     min_speed = std::min(min_speed, contact.normal.dot(velocity) - contact.depth / ahead);
   }
   return min_speed;
@@ -236,8 +233,7 @@ double GaussSeidelSolver::max_speed() const {
   return std::sqrt(largest);
 }
 
-// Ends when a sweep changes no velocity by more than kConverged of the contacts' total change, or with the
-// budget. The remaining error is an impulse that both bodies lack, so it changes no momentum; the next step
+// The remaining error is an impulse that both bodies lack, so it changes no momentum; the next step
 // solves for it.
 void GaussSeidelSolver::solve(const ContactStep& step) {
   impulses_before_.resize(points_.size());
@@ -293,13 +289,13 @@ void GaussSeidelSolver::finish(ContactStep& step, const Island& island) {
     }
     const Vector3 linear = patch.axes.transpose() * impulse.head<3>();
     const Vector3 angular = patch.axes.transpose() * impulse.tail<3>();
-    const auto give = [&](int body, double sign, const Vector3& arm) {
+    const auto apply = [&](int body, double sign, const Vector3& arm) {
       BodyState& state = step.bodies[island.bodies.begin()[body].body];
       state.linear_momentum += sign * linear;
       state.angular_momentum += sign * (arm.cross(linear) + angular);
     };
-    give(patch.b, 1.0, patch.arm_b);
-    if (patch.a != static_cast<int>(free_.size())) give(patch.a, -1.0, patch.arm_a);
+    apply(patch.b, 1.0, patch.arm_b);
+    if (patch.a != static_cast<int>(free_.size())) apply(patch.a, -1.0, patch.arm_a);
   }
   const SpringContact* row = settle_hand_rows(step, island, rows_.data());
   for (const std::size_t index : linked_) settle(step, *row++, step.body_contacts[index]);

@@ -33,8 +33,7 @@ class GaussSeidelSolver {
   void add_body(const Body& body, const BodyState& state, const ContactStep& step);
   void add_links(const ContactStep& step, const Island& island);
   void add_link(const ContactStep& step, const Range& range);
-  void add_patch(std::size_t first, int count);
-  void start(const ContactPatch& patch, std::size_t point, const Vector3& force);
+  void add_patch(std::size_t first, int count, const Vector3* forces);
   void relax(ContactPatch& patch);
 
   double max_mass_ratio() const;

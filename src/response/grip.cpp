@@ -2,20 +2,21 @@
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <bitset>
 #include <cmath>
 
 namespace mrhi {
 namespace {
 
+int finger_count(const Grip& grip) {
+  return static_cast<int>(std::bitset<kFingers>(grip.fingers).count());
+}
+
 Vector3 mean_tip(const Grip& grip, const Hand& hand) {
   Vector3 sum = Vector3::Zero();
-  int count = 0;
-  for (int finger = 0; finger < kFingers; ++finger) {
-    if (!grip.takes_part(finger)) continue;
-    sum += tip_of(hand, finger);
-    ++count;
-  }
-  return sum / count;
+  for (int finger = 0; finger < kFingers; ++finger)
+    if (grip.takes_part(finger)) sum += tip_of(hand, finger);
+  return sum / finger_count(grip);
 }
 
 /// Weight of the palm's rotation, as the radius of pads around its centre [m]. Objects rotate in the hand:
@@ -26,10 +27,8 @@ constexpr double kPalmRadius = 0.008;
 /// Weight of each end of a distal phalanx. The opposing contact groups weigh 1/2 each.
 std::array<double, kFingers> weights_of(const Grip& grip) {
   std::array<double, kFingers> result{};
-  int count = 0;
-  for (int finger = 0; finger < kFingers; ++finger) count += grip.takes_part(finger) ? 1 : 0;
   for (int finger = 0; finger < kFingers; ++finger)
-    if (grip.takes_part(finger)) result[finger] = 0.25 / count;
+    if (grip.takes_part(finger)) result[finger] = 0.25 / finger_count(grip);
   if (!grip.by_palm) result[0] = 0.25;
   return result;
 }

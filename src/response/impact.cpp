@@ -86,13 +86,13 @@ void keep_from_gaining(std::vector<ImpactLaws>& points) {
   // Its zero in the form without cancellation: (-b + root) / 2a, or the equal -2c / (b + root), whichever
   // adds numbers of one sign.
   const double root = std::sqrt(std::max(0.0, linear * linear - 4.0 * square * min_gain));
-  double share = 0.0;
+  double weight = 0.0;
   if (linear > 0.0)
-    share = -2.0 * min_gain / (linear + root);
+    weight = -2.0 * min_gain / (linear + root);
   else if (square > 0.0)
-    share = (root - linear) / (2.0 * square);
-  share = min_gain <= 0.0 ? std::clamp(share, 0.0, 1.0) : 0.0;
-  for (ImpactLaws& point : points) point.newtons = point.plastic + share * (point.newtons - point.plastic);
+    weight = (root - linear) / (2.0 * square);
+  weight = min_gain <= 0.0 ? std::clamp(weight, 0.0, 1.0) : 0.0;
+  for (ImpactLaws& point : points) point.newtons = point.plastic + weight * (point.newtons - point.plastic);
 }
 
 double time_to_close(double gap, double rate, double acceleration) {
@@ -273,9 +273,9 @@ void ImpactPoint::undo() {
 
 void ImpactPoint::set_impulse(const Vector3& impulse) {
   const Vector3 more = impulse - this->impulse();
-  const double pushed = -normal.dot(more);
-  normal_impulse += pushed;
-  friction_impulse += more + pushed * normal;
+  const double more_normal = -normal.dot(more);
+  normal_impulse += more_normal;
+  friction_impulse += more + more_normal * normal;
   a.apply(-more);
   b.apply(more);
 }

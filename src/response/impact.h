@@ -1,13 +1,11 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "mr_hand_interaction/collision/body_contact.h"
 #include "mr_hand_interaction/collision/contact.h"
 #include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/scene/body.h"
-#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
@@ -59,20 +57,6 @@ struct JointCoordinates {
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian;  ///< velocity of the point for unit joint velocities
   Eigen::Matrix<double, Eigen::Dynamic, 3> response;  ///< M^-1 J': joint velocities for a unit impulse
   Eigen::VectorXd* velocity;                          ///< of the island's joints; impulses change it
-};
-
-/// Velocity that impacts have given each capsule of the hands [m/s]. The points of a capsule share its mass.
-class HandRecoils {
- public:
-  /// Returns the recoil of the contact's capsule, set to zero.
-  Vector3* begin(const ContactKey& key) {
-    Vector3& recoil = recoils_[std::size_t(key.hand) * kCapsules + key.capsule];
-    recoil.setZero();
-    return &recoil;
-  }
-
- private:
-  std::array<Vector3, kMaxHands * kCapsules> recoils_;
 };
 
 /// A contact point of an impact: two surfaces that collide or may collide within a step.

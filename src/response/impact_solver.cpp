@@ -101,10 +101,7 @@ void widen(ImpactPoint point, double step) {
 
 }  // namespace
 
-const ImpactSolver::IterationLimits ImpactSolver::kSmallIslandLimits{500, 1e-13};
-const ImpactSolver::IterationLimits ImpactSolver::kLargeIslandLimits{30, 1e-6};
-
-ImpactSolver::ImpactSolver() : limits_(kSmallIslandLimits) {
+ImpactSolver::ImpactSolver() {
   points_.reserve(kPointCapacity);
   impact_.reserve(kPointCapacity);
   times_.reserve(kPointCapacity);
@@ -208,20 +205,20 @@ void ImpactSolver::collect_in_joints(ContactStep& step, const Island& island,
       if (contact.ignored || contact.struck) continue;
       ImpactPoint point = point_in_joints(contact.normal, -contact.depth);
       set_hand(contact, point);
-      add_point(island.place_of(body.body), contact.point - step.bodies[body.body].pose.position, 1.0);
+      add_point(island.number_of(body.body), contact.point - step.bodies[body.body].pose.position, 1.0);
       Material material = step.scene.bodies[body.body].material;
       material.restitution = contact.restitution.value_or(material.restitution);
       if (add_in_joints(step.step, point, material)) contact.time_of_impact = points_.back().time;
     }
   }
-  for (const Link& link : island.links) {
+  for (const IslandContact& link : island.links) {
     BodyContact& contact = step.body_contacts[link.index];
     if (contact.struck) continue;
     ImpactPoint point = point_in_joints(contact.normal, contact.first_touch >= 0.0 ? 0.0 : -contact.depth);
     point.between = &contact, point.total = &contact.impulse, point.struck = &contact.struck;
-    add_point(island.place_of(contact.key.b), contact.arm_b, 1.0);
+    add_point(island.number_of(contact.key.b), contact.arm_b, 1.0);
     if (!step.scene.bodies[contact.key.a].fixed)
-      add_point(island.place_of(contact.key.a), contact.arm_a, -1.0);
+      add_point(island.number_of(contact.key.a), contact.arm_a, -1.0);
     add_in_joints(step.step, point, contact.material);
   }
   for (const IslandProblem::Unknown& unknown : problem_->unknowns()) {
@@ -277,7 +274,8 @@ void ImpactSolver::set_hand(Contact& contact, ImpactPoint& point) {
   point.by_hand = true;
   point.hand_velocity = contact.hand_velocity;
   point.a.inverse_mass = contact.inverse_mass + contact.carrier_inverse_mass;
-  point.a.recoil = recoils_.begin(contact.key);
+  point.a.recoil = &recoils_[std::size_t(contact.key.hand) * kCapsules + contact.key.capsule];
+  point.a.recoil->setZero();
   point.total = &contact.impulse;
   point.struck = &contact.struck;
 }
@@ -293,7 +291,7 @@ void ImpactSolver::collect(ContactStep& step, const Island& island) {
   }
   const bool large = is_large(island);
   if (large) note_twists(step, island);
-  for (const Link& link : island.links) {
+  for (const IslandContact& link : island.links) {
     BodyContact& contact = step.body_contacts[link.index];
     if (contact.struck || (large && is_slow(step, contact))) continue;
     add(step, contact);
@@ -372,7 +370,7 @@ void ImpactSolver::resolve_simultaneously(ContactStep& step) {
 // step).
 void ImpactSolver::resolve_sequentially(ContactStep& step, const Island& island) {
   points_.clear();
-  for (const Link& link : island.links) {
+  for (const IslandContact& link : island.links) {
     BodyContact& contact = step.body_contacts[link.index];
     const ImpactPoint point = point_of(step, contact);
     const bool keeps_approaching = contact.struck && classify(point.rate()) == Approach::colliding;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <deque>
 #include <functional>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "impact.h"
 #include "island_problem.h"
 #include "islands.h"
+#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 
@@ -42,8 +44,8 @@ class ImpactSolver {
     int max_sweeps;
     double tolerance;  // of the velocity error, over the approach velocity
   };
-  static const IterationLimits kSmallIslandLimits;  // to rounding
-  static const IterationLimits kLargeIslandLimits;  // to what is visible
+  static constexpr IterationLimits kSmallIslandLimits{500, 1e-13};  // to rounding
+  static constexpr IterationLimits kLargeIslandLimits{30, 1e-6};    // to what is visible
 
   void collect(ContactStep& step, const Island& island);
   void collect_in_joints(ContactStep& step, const Island& island, const std::vector<JointState>& joints);
@@ -70,12 +72,14 @@ class ImpactSolver {
   std::vector<ImpactPoint> points_;   // of an island
   std::vector<double> times_;         // of their collisions under the present motion [s]
   std::vector<ImpactPoint*> impact_;  // points that are resolved together
-  HandRecoils recoils_;
+  /// Velocity that an impact has given each capsule of the hands [m/s]. The points of a capsule share its
+  /// mass.
+  std::array<Vector3, kMaxHands * kCapsules> recoils_;
   std::vector<BodyImpact> reported_;
   std::vector<Twist> twists_;  // by body, of a large island
   std::vector<ImpactLaws> laws_;
   bool by_hand_ = false;  // true if a hand takes part in the island's impacts
-  IterationLimits limits_;
+  IterationLimits limits_ = kSmallIslandLimits;
   std::size_t work_ = 0;  // points relaxed for the island
 
   // For an island with joints.

@@ -70,7 +70,12 @@ void ImplicitModel::solve_islands(ContactStep& step) {
 /// Returns true if any force acts. Newton's method takes one body alone: where contacts between free bodies
 /// opened and slipped, it did not converge in two steps of three.
 bool ImplicitModel::solve(ContactStep& step, const Island& island) {
-  if (island.bodies.size() > 1) return solve_several(step, island);
+  if (island.bodies.size() > 1) {
+    several_.begin(step, island, last_forces_);
+    several_.solve(step);
+    if (several_.acts()) several_.finish(step, island);
+    return several_.acts();
+  }
   problem_.begin(step, island);
   bool agree = problem_.solve();
   // The operator receives the contacts' forces, so the momenta must follow from these.
@@ -79,29 +84,13 @@ bool ImplicitModel::solve(ContactStep& step, const Island& island) {
     problem_.evaluate(true);  // at the final velocity
     agree = true;
   }
-  const bool acts = problem_.scale() > 0.0;
-  if (acts) problem_.finish(agree, step, island);
-  return acts;
-}
-
-bool ImplicitModel::solve_several(ContactStep& step, const Island& island) {
-  several_.begin(step, island, last_forces_);
-  several_.solve(step);
-  const bool acts = several_.acts();
-  if (acts) several_.finish(step, island);
-  return acts;
+  if (problem_.scale() <= 0.0) return false;
+  problem_.finish(agree, step, island);
+  return true;
 }
 
 /// The default stiffness is stable at any step and mass.
 extern const ContactModelEntry implicit_model{"implicit", 0, 2000.0, make_model<ImplicitModel>, true};
-
-namespace {
-
-bool has(const Island& island, int body) {
-  return island.place_of(body) >= 0;
-}
-
-}  // namespace
 
 JointedModel::JointedModel(const Configuration& configuration, const Scene& scene, SimulationState& state,
                            std::vector<Event>& events)
@@ -111,7 +100,7 @@ JointedModel::JointedModel(const Configuration& configuration, const Scene& scen
       linkages_(linkages_of(scene)),
       awake_(linkages_.size()),
       solved_(linkages_.size()),
-      usual_step_(configuration.step) {
+      regular_step_(configuration.step) {
   for (const Linkage& linkage : linkages_) {
     groups_.emplace_back();
     for (const LinkageBody& link : linkage.bodies) groups_.back().push_back(link.body);
@@ -152,11 +141,11 @@ void JointedModel::place(const ContactStep& step, std::size_t index) {
 // flight's order, and free motion is not damped by a backward Euler step.
 void JointedModel::respond(ContactStep& step, const Island& island) {
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
-    if (!has(island, groups_[i].front())) continue;
+    if (!island.contains(groups_[i].front())) continue;
     awake_[i] = 1;
     place(step, i);
   }
-  problem_.begin(step, island, linkages_, motions_, state_.joints, usual_step_);
+  problem_.begin(step, island, linkages_, motions_, state_.joints, regular_step_);
   impacts_.resolve(step, island, impact_friction(step), problem_, state_.joints);
   if (!problem_.acts()) return;
   bool agree = problem_.solve();
@@ -167,7 +156,7 @@ void JointedModel::respond(ContactStep& step, const Island& island) {
   }
   problem_.finish(agree, step, island, state_.joints);
   for (std::size_t i = 0; i < linkages_.size(); ++i) {
-    if (has(island, groups_[i].front())) solved_[i] = 1;
+    if (island.contains(groups_[i].front())) solved_[i] = 1;
   }
 }
 
@@ -186,12 +175,12 @@ void JointedModel::fly(const ContactStep& step) {
 
 void JointedModel::note(std::size_t index) {
   const JointChange change = note_place(scene_.joints[index], state_.joints[index]);
-  const auto tell = [&](bool happened, EventKind kind) {
+  const auto report = [&](bool happened, EventKind kind) {
     if (happened) events_.push_back({state_.time, kind, scene_.joints[index].child, 0});
   };
-  tell(change.reached_limit, EventKind::joint_limit);
-  tell(change.entered_detent, EventKind::detent);
-  tell(change.opened_latch, EventKind::latch_open);
+  report(change.reached_limit, EventKind::joint_limit);
+  report(change.entered_detent, EventKind::detent);
+  report(change.opened_latch, EventKind::latch_open);
 }
 
 }  // namespace mrhi

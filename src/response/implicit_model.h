@@ -32,7 +32,6 @@ class ImplicitModel : public ContactModel {
 
  private:
   bool solve(ContactStep& step, const Island& island);
-  bool solve_several(ContactStep& step, const Island& island);
 
   GaussSeidelSolver several_;
   std::vector<Vector3> last_forces_;  // of contacts between bodies, then with hands [N]
@@ -67,7 +66,7 @@ class JointedModel : public ImplicitModel {
   std::vector<LinkageMotion> motions_;
   std::vector<LinkageFlight> flights_;
   std::vector<char> awake_, solved_;  // by linkage; solved: momenta include gravity
-  const double usual_step_;           // regular step [s]
+  const double regular_step_;         // regular step [s]
   Eigen::VectorXd positions_;
 };
 

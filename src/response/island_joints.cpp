@@ -13,6 +13,8 @@ namespace {
 
 /// Fraction of the island's momentum, added to the scale of errors: smaller errors are rounding.
 constexpr double kMomentumTolerance = 1e-6;
+/// Largest error, over scale(), at which momenta are taken from the forces.
+constexpr double kConsistencyTolerance = 1e-4;
 /// Largest error, over scale(), at which the forces are a warm start of the next step.
 constexpr double kMaxWarmStartError = 0.01;
 /// Largest number of bodies that are solved without a bound on effort.
@@ -46,10 +48,10 @@ void Factors::solve_in_place(Eigen::VectorXd& right_hand_side) const {
 // not an error of this step. u* = u0 + h M^-1 J' m g.
 void IslandProblem::begin(const ContactStep& step, const Island& island, const std::vector<Linkage>& linkages,
                           std::vector<LinkageMotion>& motions, const std::vector<JointState>& joints,
-                          double usual) {
+                          double regular_step) {
   begin(island.bodies.size(), true);
   step_ = step.step;
-  usual_ = usual;
+  regular_step_ = regular_step;
   scene_ = &step.scene;
   island_ = &island;
   acts_ = is_touched(step, island);
@@ -57,7 +59,7 @@ void IslandProblem::begin(const ContactStep& step, const Island& island, const s
   make_rows(step, island);
   number_unknowns(step, island, linkages, motions);
   mass_factors_.compute(mass_);
-  carried_ = std::sqrt(gradient_.squaredNorm());
+  start_momentum_ = std::sqrt(gradient_.squaredNorm());
   start_ = gradient_;
   solve_mass(start_);
   solve_mass(fall_);
@@ -73,17 +75,17 @@ IslandProblem::Effort IslandProblem::effort_in_joints() const {
   effort.iterations = 12;
   effort.limits = 1;
   effort.held_iterations = 10;
-  effort.unchecked = 0;
+  effort.full_steps = 0;
   effort.trials = 10;
   effort.converged = 1e-6;
-  effort.anew = false;
+  effort.restarts = false;
   return effort;
 }
 
 void IslandProblem::number_unknowns(const ContactStep& step, const Island& island,
                                     const std::vector<Linkage>& linkages,
                                     std::vector<LinkageMotion>& motions) {
-  const auto has = [&](const Linkage& linkage) { return island.place_of(linkage.bodies.front().body) >= 0; };
+  const auto has = [&](const Linkage& linkage) { return island.contains(linkage.bodies.front().body); };
   int count = 0;
   for (const Linkage& linkage : linkages) count += has(linkage) ? linkage.unknowns() : 0;
   for (const IslandBody& body : island.bodies) count += step.scene.bodies[body.body].flies ? 6 : 0;
@@ -132,8 +134,8 @@ void IslandProblem::add_linkage(const ContactStep& step, const Island& island, c
     const LinkageBody& link = linkage.bodies[i];
     const Body& body = motion.body(i);
     const auto index = static_cast<std::size_t>(link.body);
-    columns_[island.place_of(index)] = {first, count};
-    motion.add_jacobian(i, jacobian_.block(6 * island.place_of(index), first, 6, count));
+    columns_[island.number_of(index)] = {first, count};
+    motion.add_jacobian(i, jacobian_.block(6 * island.number_of(index), first, 6, count));
     if (link.joint == LinkageBody::kNone) {
       weights_.segment<3>(first).setOnes();
       weights_.segment<3>(first + 3).setConstant(3.0 * body.mass / body.inertia.trace());
@@ -151,7 +153,7 @@ void IslandProblem::add_body_without_joint(const ContactStep& step, const Island
   const Body& body = step.scene.bodies[index];
   const BodyState& state = step.bodies[index];
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
-  const int number = island.place_of(index);
+  const int number = island.number_of(index);
   columns_[number] = {first, 6};
   parts_.push_back({{first, 6}, nullptr, nullptr, number});
   jacobian_.block<6, 6>(6 * number, first).setIdentity();
@@ -178,7 +180,8 @@ void IslandProblem::start_with(const Vector& velocity, const ContactStep& step,
       velocity_.segment<3>(row + 3) += step_ * pushed.angular;
       continue;
     }
-    laws_[row].begin(scene_->joints[unknown.joint], joints[unknown.joint], mass_(row, row), step_, usual_);
+    laws_[row].begin(scene_->joints[unknown.joint], joints[unknown.joint], mass_(row, row), step_,
+                     regular_step_);
     acts_ = acts_ || laws_[row].acts(std::max(std::abs(start_[row]), std::abs(free_[row])));
     velocity_[row] += step_ * joints[unknown.joint].pushed;
   }
@@ -198,12 +201,12 @@ void IslandProblem::add_joint_forces() {
       continue;
     }
     for (int i = 0; i < part.motion->size(); ++i) {
-      const int row = 6 * island_->place_of(part.linkage->bodies[i].body);
+      const int row = 6 * island_->number_of(part.linkage->bodies[i].body);
       part.motion->impulses()[i] = {body_impulse_.segment<3>(row), body_impulse_.segment<3>(row + 3)};
     }
     part.motion->push(momenta);
   }
-  scale_ += kMomentumTolerance * carried_;
+  scale_ += kMomentumTolerance * start_momentum_;
   for (const auto& [joint, body, row] : unknowns_) {
     if (joint == kNoJoint) continue;
     gradient_[row] -= step_ * laws_[row].force(velocity_[row]);
@@ -221,7 +224,7 @@ void IslandProblem::find_body_velocities() {
     }
     part.motion->move(velocity);
     for (int i = 0; i < part.motion->size(); ++i)
-      body_velocity_.segment<6>(6 * island_->place_of(part.linkage->bodies[i].body))
+      body_velocity_.segment<6>(6 * island_->number_of(part.linkage->bodies[i].body))
           << part.motion->at(i).linear,
           part.motion->at(i).angular;
   }
@@ -309,8 +312,7 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island,
                            std::vector<JointState>& joints) {
   settle_rows(step, island);
   // Forces are the warm start of the next step, unless their error is large.
-  const double max_error = kMaxWarmStartError * scale();
-  const bool lasts = agree || error_squared() <= max_error * max_error;
+  const bool lasts = agree || error_below(kMaxWarmStartError);
   for (const Unknown& unknown : unknowns_) {
     const Eigen::Index row = unknown.row;
     if (unknown.joint == kNoJoint) {
@@ -326,7 +328,7 @@ void IslandProblem::finish(bool agree, ContactStep& step, const Island& island,
     laws_[row].settle(velocity_[row], joint);
   }
   // u minus M^-1 times the residual: momenta then agree with the reported forces.
-  if (agree || nearly_agrees()) {
+  if (agree || error_below(kConsistencyTolerance)) {
     direction_ = gradient_;
     solve_mass(direction_);
     velocity_ -= direction_;

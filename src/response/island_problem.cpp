@@ -11,8 +11,6 @@ namespace {
 
 /// Position error at the end of the step below which a body counts as solved [m].
 constexpr double kPositionTolerance = 1e-9;
-/// Largest error, over scale(), at which momenta are taken from the forces.
-constexpr double kConsistencyTolerance = 1e-4;
 /// Smallest mass ratio of an object to the operator who holds it at which both are solved together. A lighter
 /// object hardly moves a person, so the operator's velocity at the start of the step is stable at any step
 /// length.
@@ -96,7 +94,7 @@ void IslandProblem::begin(std::size_t bodies, bool in_joints) {
   in_joints_ = in_joints;
   coupled_ = false;
   carrier_ = Twist();
-  unseen_ = std::numeric_limits<double>::infinity();
+  invisible_impulse_ = std::numeric_limits<double>::infinity();
   wrenches_.resize(bodies);
   if (in_joints) return;
   for (Vector* vector :
@@ -108,7 +106,7 @@ void IslandProblem::make_rows(const ContactStep& step, const Island& island) {
   make_hand_rows(step, island, rows_);
   std::size_t row = rows_.size();
   rows_.resize(row + island.links.size());
-  for (const Link& link : island.links)
+  for (const IslandContact& link : island.links)
     make_link_row(step, island, step.body_contacts[link.index], rows_[row++]);
 }
 
@@ -116,13 +114,13 @@ void IslandProblem::make_rows(const ContactStep& step, const Island& island) {
 // constant L (free_flight.h).
 //
 //     u* = (p / m + h g, I^-1 L)          u_0 = u* + h a,     a = (u - u*) / h of the last step
-//     unseen = m (1 nm) / h
+//     invisible = m (1 nm) / h
 void IslandProblem::begin_body(const ContactStep& step, std::size_t index) {
   const Body& body = step.scene.bodies[index];
   const BodyState& state = step.bodies[index];
   const Matrix3 rotation = state.pose.orientation.toRotationMatrix();
   one_ = {index, body.mass, rotation * body.inertia * rotation.transpose()};
-  unseen_ = kPositionTolerance / step_ * body.mass;
+  invisible_impulse_ = kPositionTolerance / step_ * body.mass;
   start_.head<3>() = state.linear_momentum / body.mass;
   start_.tail<3>() = rotation * (body.inverse_inertia * (rotation.transpose() * state.angular_momentum));
   free_ = start_;
@@ -137,11 +135,6 @@ void IslandProblem::begin_body(const ContactStep& step, std::size_t index) {
 /// is heavy enough. -1 if there is none, or several.
 int IslandProblem::coupled_operator(const ContactStep& step, const Island& island) const {
   const IslandBody& body = *island.bodies.begin();
-  const double limit = step.scene.bodies[body.body].mass / kMinCoupledMassRatio;
-  const auto is_light = [&](int op) { return step.scene.bodies[op].mass < limit; };
-  const std::vector<Operator>& operators = step.scene.operators;
-  if (std::none_of(operators.begin(), operators.end(), [&](const Operator& o) { return is_light(o.body); }))
-    return -1;
   int op = -1;
   bool several = false;
   const auto see = [&](std::size_t hand) {
@@ -154,7 +147,8 @@ int IslandProblem::coupled_operator(const ContactStep& step, const Island& islan
   for (const Grip& grip : step.grips) {
     if (grip.active && grip.body == body.body) see(grip.hand);
   }
-  return several || op < 0 || !is_light(op) ? -1 : op;
+  const double limit = step.scene.bodies[body.body].mass / kMinCoupledMassRatio;
+  return several || op < 0 || step.scene.bodies[op].mass >= limit ? -1 : op;
 }
 
 // The springs' wrench acts on the body and, with opposite sign, on the operator. So the body's velocity W
@@ -244,7 +238,7 @@ void IslandProblem::evaluate(bool renew_limits) {
     double spin;
     relative_motion(row, velocity, spin);
     SpringResponse& response = row.response;
-    row.spring.respond(velocity, spin, renew_limits, response);
+    row.spring.evaluate(velocity, spin, renew_limits, response);
     load += response.normal_force + row.spring.bond;
     Triple torque = response.torque * row.spring.normal;
     if (row.tilts) torque = torque + response.force.dot(row.spring.normal) * row.tilt;
@@ -343,10 +337,6 @@ double IslandProblem::energy() {
   return in_joints_ ? sum + joint_energy() : sum;
 }
 
-bool IslandProblem::nearly_agrees() const {
-  return error_squared() <= kConsistencyTolerance * kConsistencyTolerance * scale_ * scale_;
-}
-
 // Momenta consistent with the forces are M u* + h J' f: one body gains what the other loses, however far u
 // has converged. If a body is solved with its operator, this always holds, as no other momenta are known.
 void IslandProblem::finish_body(bool agree, ContactStep& step) const {
@@ -364,7 +354,7 @@ void IslandProblem::finish_body(bool agree, ContactStep& step) const {
 
 void IslandProblem::settle_rows(ContactStep& step, const Island& island) const {
   const SpringContact* row = settle_hand_rows(step, island, rows_.data());
-  for (const Link& link : island.links) settle(step, *row++, step.body_contacts[link.index]);
+  for (const IslandContact& link : island.links) settle(step, *row++, step.body_contacts[link.index]);
 }
 
 void IslandProblem::finish(bool agree, ContactStep& step, const Island& island) {

@@ -109,10 +109,10 @@ class IslandProblem {
  public:
   /// An island of one body.
   void begin(const ContactStep& step, const Island& island);
-  /// An island with joints. `linkages` and their placed motions are those of the whole scene. `usual`: the
-  /// regular step; the last one of a frame may be shorter [s].
+  /// An island with joints. `linkages` and their placed motions are those of the whole scene. `regular_step`:
+  /// the last one of a frame may be shorter [s].
   void begin(const ContactStep& step, const Island& island, const std::vector<Linkage>& linkages,
-             std::vector<LinkageMotion>& motions, const std::vector<JointState>& joints, double usual);
+             std::vector<LinkageMotion>& motions, const std::vector<JointState>& joints, double regular_step);
   /// The body of an operator whose hands touch fixtures. `carrier`: motion that carries the hands.
   void begin_operator(const ContactStep& step, std::size_t body, const std::vector<Contact*>& contacts,
                       const Twist& carrier);
@@ -123,8 +123,6 @@ class IslandProblem {
   void evaluate(bool renew_limits);
   /// Sum of the acting impulses, which errors are compared with [N s].
   double scale() const { return scale_; }
-  /// True if the error is small enough to take momenta from the forces.
-  bool nearly_agrees() const;
   /// Velocity of the one body at the end of the step.
   Twist velocity() const {
     return {velocity_.head<3>() + carrier_.linear, velocity_.tail<3>() + carrier_.angular};
@@ -182,15 +180,15 @@ class IslandProblem {
     int iterations = 40;       // with Coulomb's limits renewed in each
     int limits = 8;            // renewals of held limits after these
     int held_iterations = 60;  // after each renewal
-    int unchecked = 2;        // first iterations without a line search: exact while no contact opens or slips
-    bool anew = true;         // true if held limits restart from the start of the step, not the last iterate
+    int full_steps = 2;       // first iterations without a line search: exact while no contact opens or slips
+    bool restarts = true;     // true if held limits restart from the start of the step, not the last iterate
     int trials = 50;          // per line search
     double converged = 1e-7;  // largest error of a solution, over scale()
   };
 
   // Newton's method (newton.cpp).
   double error_squared() const;
-  bool error_below(double part) const;
+  bool error_below(double ratio) const;
   bool solved() const;
   void solve_with_held_limits();
   void advance(bool checked, bool same_hessian);
@@ -233,7 +231,7 @@ class IslandProblem {
 
   Effort effort_;
   double step_ = 0.0, scale_ = 0.0;
-  double unseen_ = 0.0;                     // an impulse of the one body whose effect is invisible [N s]
+  double invisible_impulse_ = 0.0;          // an impulse of the one body whose effect is invisible [N s]
   std::vector<SpringContact> rows_;         // of hands, grips and contacts between bodies, in this order
   std::vector<Wrench> wrenches_;            // by body's number, of the last iterate
   OneBody one_;                             // in an island without joints
@@ -251,7 +249,7 @@ class IslandProblem {
   Twist carrier_;  // velocity of the operator at the body's centre
 
   bool in_joints_ = false, acts_ = false;
-  double usual_ = 0.0, carried_ = 0.0;
+  double regular_step_ = 0.0, start_momentum_ = 0.0;
   const Scene* scene_ = nullptr;
   std::vector<Unknown> unknowns_;
   std::vector<JointLaw> laws_;    // by row; used for joints

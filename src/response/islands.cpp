@@ -104,14 +104,14 @@ void Islands::link_bodies(const ContactStep& step, const std::vector<std::vector
 // scene's order. Results do not depend on the order in which contacts connect them.
 void Islands::gather() {
   for (IslandBody& body : bodies_) body.root = root_of(body.root);
-  for (Link& link : links_) link.root = root_of(link.root);
+  for (IslandContact& link : links_) link.root = root_of(link.root);
   // Keeps the last of a body's entries, which has the hands' contacts.
   std::sort(bodies_.begin(), bodies_.end(), [](const IslandBody& x, const IslandBody& y) {
     return std::tie(x.root, x.body, y.last) < std::tie(y.root, y.body, x.last);
   });
   const auto same = [](const IslandBody& x, const IslandBody& y) { return x.body == y.body; };
   bodies_.erase(std::unique(bodies_.begin(), bodies_.end(), same), bodies_.end());
-  const auto before = [](const Link& x, const Link& y) {
+  const auto before = [](const IslandContact& x, const IslandContact& y) {
     return std::tie(x.root, x.index) < std::tie(y.root, y.index);
   };
   if (!std::is_sorted(links_.begin(), links_.end(), before)) std::sort(links_.begin(), links_.end(), before);
@@ -121,15 +121,15 @@ void Islands::gather() {
 void Islands::divide(const Scene& scene, bool by_joints) {
   islands_.clear();
   with_joints_.clear();
-  places_.resize(scene.bodies.size(), -1);
-  const Link *link = links_.data(), *const links_end = link + links_.size();
+  numbers_.resize(scene.bodies.size(), -1);
+  const IslandContact *link = links_.data(), *const links_end = link + links_.size();
   const IslandBody *body = bodies_.data(), *const bodies_end = body + bodies_.size();
   while (body != bodies_end) {
     const int root = body->root;
-    Island island{{body, body}, {link, link}, places_.data()};
+    Island island{{body, body}, {link, link}, numbers_.data()};
     bool has_joints = false;
     for (; body != bodies_end && body->root == root; ++body) {
-      places_[body->body] = static_cast<int>(body - island.bodies.first);
+      numbers_[body->body] = static_cast<int>(body - island.bodies.first);
       has_joints = has_joints || (by_joints && !scene.bodies[body->body].flies);
     }
     while (link != links_end && link->root == root) ++link;

@@ -14,7 +14,7 @@ struct IslandBody {
 };
 
 /// A contact of an island's body with another of its bodies or with a fixture.
-struct Link {
+struct IslandContact {
   int root;
   std::size_t index;  // in ContactStep::body_contacts
 };
@@ -30,15 +30,16 @@ struct Span {
 
 /// A group of free bodies connected by contacts or joints, with the contacts that act on them.
 struct Island {
-  Span<IslandBody> bodies;  // sorted by index
-  Span<Link> links;         // likewise
-  const int* places;        // by index in Scene::bodies; arbitrary for bodies of other islands
+  Span<IslandBody> bodies;    // sorted by index
+  Span<IslandContact> links;  // likewise
+  const int* numbers;         // by index in Scene::bodies; arbitrary for bodies of other islands
 
   /// Returns the number of a body of Scene::bodies in the island; -1 if it belongs to another one.
-  int place_of(std::size_t body) const {
-    const auto place = static_cast<std::size_t>(places[body]);
-    return place < bodies.size() && bodies.first[place].body == body ? places[body] : -1;
+  int number_of(std::size_t body) const {
+    const auto number = static_cast<std::size_t>(numbers[body]);
+    return number < bodies.size() && bodies.first[number].body == body ? numbers[body] : -1;
   }
+  bool contains(std::size_t body) const { return number_of(body) >= 0; }
 };
 
 /// True if any contact or grip acts on the island.
@@ -65,10 +66,10 @@ class Islands {
   void unite(int a, int b);
 
   std::vector<IslandBody> bodies_;
-  std::vector<Link> links_;
+  std::vector<IslandContact> links_;
   std::vector<Island> islands_, with_joints_;
   std::vector<int> parent_;   // by body
-  std::vector<int> places_;   // by body
+  std::vector<int> numbers_;  // by body: in its island
   std::vector<char> listed_;  // by body: true if it is in bodies_
 };
 

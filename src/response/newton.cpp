@@ -11,7 +11,7 @@
 // Forces have kinks where contacts open and slip. There H is one of the generalised Hessians, and this is a
 // semismooth Newton method (Qi & Sun 1993). If the set of open contacts is known and all others stick, forces
 // are linear in u but for the release fade and the pad. One step is then practically exact. Where contacts
-// slip under renewed limits, H lacks dL/dN (see Spring::respond), so convergence is linear. Hessians are
+// slip under renewed limits, H lacks dL/dN (see Spring::evaluate), so convergence is linear. Hessians are
 // reused while the error falls fast (the chord method; Kelley 1995, ch. 5).
 namespace mrhi {
 namespace {
@@ -48,15 +48,16 @@ bool IslandProblem::solve() {
       advance(false, near);
       return false;
     }
-    advance(i >= effort_.unchecked && !near, near);
+    advance(i >= effort_.full_steps && !near, near);
   }
   solve_with_held_limits();
   return false;
 }
 
-bool IslandProblem::error_below(double part) const {
+/// Compares the error with a ratio of scale().
+bool IslandProblem::error_below(double ratio) const {
   // The constant is for bodies on which nothing acts, where a relative error is undefined [N s].
-  const double limit = part * scale_ + 1e-18;
+  const double limit = ratio * scale_ + 1e-18;
   return error_squared() <= limit * limit;
 }
 
@@ -65,7 +66,7 @@ bool IslandProblem::error_below(double part) const {
 /// a small ratio of their impulse is a visible displacement.
 bool IslandProblem::solved() const {
   if (!error_below(effort_.converged)) return false;
-  return error_squared() <= unseen_ * unseen_ || error_below(kRoundingError);
+  return error_squared() <= invisible_impulse_ * invisible_impulse_ || error_below(kRoundingError);
 }
 
 /// Fallback where limits and velocity do not converge together. Solves the convex problem with limits held,
@@ -76,7 +77,7 @@ bool IslandProblem::solved() const {
 /// `solve, renew` solves Coulomb's (Panagiotopoulos 1975, Haslinger 1983). Convergence is proven for small
 /// coefficients only, hence the bound.
 void IslandProblem::solve_with_held_limits() {
-  if (effort_.anew) velocity_ = start_;
+  if (effort_.restarts) velocity_ = start_;
   for (int renewed = 0; renewed < effort_.limits; ++renewed) {
     evaluate(true);
     for (int i = 0; i < effort_.held_iterations && !solved(); ++i) {

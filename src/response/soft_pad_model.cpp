@@ -88,12 +88,12 @@ class PadGrid {
   void drag(const BodyState& state, Contact& contact) {
     stretch_ = stretch_of(contact);
     const Vector3 deepest =
-        tangential_force(material_, stiffness_, damping_ * slide_, hardest_, state, contact);
+        tangential_force(material_, stiffness_, damping_ * slide_, max_normal_force_, state, contact);
     const bool sticks = contact.friction == Friction::sticking;
     friction_ = sticks ? material_.static_friction : material_.dynamic_friction;
     if (!sticks) stretch_ = deepest / stiffness_;
     // Beyond this twist the pads next to the centre slip too.
-    const double max_twist = friction_ * hardest_ / (stiffness_ * kSpacing * contact.radius);
+    const double max_twist = friction_ * max_normal_force_ / (stiffness_ * kSpacing * contact.radius);
     contact.twist = std::clamp(contact.twist + step_ * spin_, -max_twist, max_twist);
     unturn_ = Eigen::AngleAxisd(-contact.twist, n_);
   }
@@ -120,7 +120,7 @@ class PadGrid {
     return sum;
   }
 
-  bool presses() const { return hardest_ > 0.0; }
+  bool is_loaded() const { return max_normal_force_ > 0.0; }
 
  private:
   void place(const Contact& contact, const Body& body, const BodyState& state) {
@@ -147,7 +147,7 @@ class PadGrid {
       if (depth <= 0.0) continue;
       const double normal_force = std::max(0.0, stiffness_ * depth - damping_ * normal_velocity_);
       pads_[count_++] = {offset, point + depth * n_, normal_force};
-      hardest_ = std::max(hardest_, normal_force);
+      max_normal_force_ = std::max(max_normal_force_, normal_force);
     }
   }
 
@@ -159,7 +159,7 @@ class PadGrid {
   Vector3 slide_;               // likewise along the surface [m/s]
   double spin_;                 // likewise about n [rad/s]
   double friction_ = 0.0;
-  double hardest_ = 0.0;  // largest normal force of a pad [N]
+  double max_normal_force_ = 0.0;  // largest normal force of a pad [N]
   Vector3 stretch_ = Vector3::Zero();
   Matrix3 unturn_ = Matrix3::Identity();
   std::array<Pad, kPads> pads_;
@@ -184,7 +184,7 @@ class SoftPadModel : public ContactModel {
       if (index != current) before = step.bodies[current = index];
       if (!contact.touching() || body.material.stiffness * contact.share <= 0.0) continue;
       PadGrid pads(contact, body, before, step.step);
-      if (!pads.presses()) continue;
+      if (!pads.is_loaded()) continue;
       pads.drag(before, contact);
       contact.force = pads.act(body.fixed, step.bodies[index]);
     }

@@ -32,18 +32,12 @@ constexpr double kTwistLever = 0.025;
 /// The radius is Hertz's a = sqrt(R d) (collision/god_object.cpp).
 constexpr double kPatchTorque = 2.0 / 3.0;
 
-/// An open contact has no damping. A gap is a spring of depth < 0, which closes by the end of the step if h
-/// u.n < depth. With the dashpot's time in place of h it would act on bodies that only approach.
-double look_ahead(double step, double depth, bool damping) {
-  return depth <= 0.0 ? step : mrhi::look_ahead(step, damping);
-}
-
 /// Smallest part of the pad's stiffness that shear has: at none the anchor would have no place.
-constexpr double kLeastEngaged = 0.02;
+constexpr double kMinShearRatio = 0.02;
 
 /// Part of its final stiffness that the pad has at its depth; 0 without a pad.
 double engaged(const Contact& contact, double pad) {
-  return pad > 0.0 ? std::clamp(contact.pressed() / pad, kLeastEngaged, 1.0) : 0.0;
+  return pad > 0.0 ? std::clamp(contact.pressed() / pad, kMinShearRatio, 1.0) : 0.0;
 }
 
 /// Stretch of the anchor that keeps its force as the stiffness changes, over its stretch.
@@ -111,8 +105,8 @@ double kept_twist(const SpringContact& solved, double step) {
 /// The step just solved used the limit L of the previous friction state, mu N or phi N. The new state sets
 /// that of the next step. An open contact, N = 0, does not slide.
 template <typename Touch>
-Vector3 settle_touch(const ContactStep& step, const SpringContact& solved, const Material& material,
-                     Touch& touch, double grip = 1.0) {
+Vector3 settle_contact(const ContactStep& step, const SpringContact& solved, const Material& material,
+                       Touch& touch, double grip = 1.0) {
   const double limit = solved.spring.slip_limit;
   touch.force = vector(solved.response.force);
   touch.friction = solved.response.trial_squared <= limit * limit ? Friction::sticking : Friction::slipping;
@@ -126,9 +120,10 @@ Vector3 settle_touch(const ContactStep& step, const SpringContact& solved, const
 
 }  // namespace
 
-// e = max(h, tau): see kRelaxation.
-double look_ahead(double step, bool damping) {
-  return damping ? std::max(step, kRelaxation) : step;
+// e = max(h, tau): see kRelaxation. A gap is a spring of depth < 0, which closes by the end of the step if h
+// u.n < depth. With the dashpot's time in place of h it would act on bodies that only approach.
+double look_ahead(double step, bool damping, bool touches) {
+  return damping && touches ? std::max(step, kRelaxation) : step;
 }
 
 // The share scales the stiffness, so that N = k share d sums to the phalanx's load, and the strength.
@@ -138,15 +133,15 @@ void make_spring(const ContactStep& step, const Contact& contact, SpringContact&
   const ContactConfiguration& configuration = step.configuration;
   const Body& body = step.scene.bodies[contact.key.body];
   const Triple n = triple(contact.normal), point = triple(contact.point);
-  const double now = engaged(contact, step.configuration.hand.pad);
+  const HandStrength& hand = configuration.hand;
+  const double now = engaged(contact, hand.pad);
   Spring& spring = result.spring;
   spring.normal = n;
   spring.stretch = triple(kept_stretch(contact, now) * tangential_reach(contact));  // Eqs. 16 to 18
   spring.depth = contact.pressed();
   spring.twist = contact.twist;
-  spring.ahead = look_ahead(step.step, spring.depth, configuration.damping);
+  spring.ahead = look_ahead(step.step, configuration.damping, spring.depth > 0.0);
   spring.fade = release_fade(configuration.release_fade);
-  const HandStrength& hand = configuration.hand;
   spring.pad = hand.pad;
   spring.half_over_pad = hand.pad > 0.0 ? 0.5 / hand.pad : 0.0;
   spring.stiffness = body.material.stiffness * contact.share;
@@ -173,7 +168,7 @@ void make_spring(const ContactStep& step, const BodyContact& contact, SpringCont
   spring.normal = triple(contact.normal);
   spring.stretch = triple(contact.stretch);
   spring.depth = contact.depth;
-  spring.ahead = look_ahead(step.step, spring.depth, configuration.damping);
+  spring.ahead = look_ahead(step.step, configuration.damping, spring.depth > 0.0);
   spring.fade = release_fade(configuration.release_fade);
   spring.stiffness = spring.shear = configuration.object_stiffness * contact.share;
   spring.friction = friction_of(contact.material, contact.friction);
@@ -198,14 +193,14 @@ void settle(const ContactStep& step, const SpringContact& solved, Contact& conta
   contact.twist = kept_twist(solved, step.step);
   contact.torque = solved.response.torque;
   const Material& material = step.scene.bodies[contact.key.body].material;
-  const Vector3 slid = settle_touch(step, solved, material, contact, contact.grip);
+  const Vector3 slid = settle_contact(step, solved, material, contact, contact.grip);
   if (slid.isZero(0.0)) return;
   const Pose& pose = step.bodies[contact.key.body].pose;
   contact.god_object = pose.to_local(pose * contact.god_object + slid - contact.lever);
 }
 
 void settle(const ContactStep& step, const SpringContact& solved, BodyContact& contact) {
-  const Vector3 slid = settle_touch(step, solved, contact.material, contact);
+  const Vector3 slid = settle_contact(step, solved, contact.material, contact);
   if (slid.isZero(0.0)) return;
   const Pose& pose = step.bodies[contact.key.b].pose;
   contact.anchor_b = pose.to_local(pose * contact.anchor_b + slid);
@@ -244,7 +239,7 @@ double yielding_depth(const Spring& spring) {
 ///
 /// The kinks are where the finger begins to comply, where the pad ends, at rest, where the fade begins, and
 /// where the force ends: at d+ = 0 or at the release speed, whichever is slower.
-double push_energy(const Spring& spring, double rate) {
+double normal_energy(const Spring& spring, double rate) {
   const auto rate_at = [&](double depth) { return (spring.depth - depth) / spring.ahead; };
   const double end = spring.fade > 0.0 ? std::min(rate_at(0.0), 1.0 / spring.fade) : rate_at(0.0);
   std::array<double, 4> kinks{rate_at(yielding_depth(spring)), rate_at(spring.pad), 0.0, end};
@@ -274,19 +269,21 @@ double potential(const Spring& spring, const Triple& u, double spin) {
   const double rate = u.dot(spring.normal);
   const Triple drawn = spring.stretch + spring.ahead * (u - rate * spring.normal);
   const double turned = std::abs(spring.twist + spring.ahead * spin);
-  return push_energy(spring, rate) +
+  return normal_energy(spring, rate) +
          (yielding_energy(spring.shear, std::sqrt(drawn.dot(drawn)), spring.slip_limit) +
           yielding_energy(spring.twist_stiffness, turned, spring.twist_limit)) /
              spring.ahead;
 }
 
-// Without normal and depth the spring acts alike in all directions, and its limit is the bond alone: a
-// Coulomb contact whose limit does not depend on a normal force.
-//
-//     F = k q+ min(1, bond / k|q+|)       q+ = s + tau u, all of u: n = 0 makes P the identity
-//
-// Depth and fade are 0, so N is 0. The four points are corners of a tetrahedron: by forces alone they support
-// torques about any axis.
+namespace {
+
+/// Makes the spring of one point of a grip. Without normal and depth it acts alike in all directions, and its
+/// limit is the bond alone: a Coulomb contact whose limit does not depend on a normal force.
+///
+///     F = k q+ min(1, bond / k|q+|)       q+ = s + tau u, all of u: n = 0 makes P the identity
+///
+/// Depth and fade are 0, so N is 0. The four points are corners of a tetrahedron: by forces alone they
+/// support torques about any axis.
 void make_grip_spring(const ContactStep& step, const Grip& grip, int point, SpringContact& result) {
   const Pose& pose = step.bodies[grip.body].pose;
   const Vector3 on_body = pose * grip.in_body[point];
@@ -299,8 +296,6 @@ void make_grip_spring(const ContactStep& step, const Grip& grip, int point, Spri
   result.arm = triple(on_body - pose.position);
   result.drive = triple(grip.velocity[point]);
 }
-
-namespace {
 
 /// Writes the solution of one grip point back; if it slips, its anchor on the body follows.
 void settle_grip(const ContactStep& step, const SpringContact& solved, int point, Grip& grip) {
@@ -343,7 +338,7 @@ void make_hand_rows(const ContactStep& step, const Island& island, std::vector<S
     ++number;
   }
   for (const Grip& grip : step.grips) {
-    const int body = grip.active ? island.place_of(grip.body) : SpringContact::kNone;
+    const int body = grip.active ? island.number_of(grip.body) : SpringContact::kNone;
     if (body < 0) continue;
     for (int point = 0; point < kGripPoints; ++point, ++row) {
       make_grip_spring(step, grip, point, *row);
@@ -355,8 +350,8 @@ void make_hand_rows(const ContactStep& step, const Island& island, std::vector<S
 
 void make_link_row(const ContactStep& step, const Island& island, const BodyContact& contact,
                    SpringContact& row) {
-  row.a = step.scene.bodies[contact.key.a].fixed ? SpringContact::kNone : island.place_of(contact.key.a);
-  row.b = island.place_of(contact.key.b);
+  row.a = step.scene.bodies[contact.key.a].fixed ? SpringContact::kNone : island.number_of(contact.key.a);
+  row.b = island.number_of(contact.key.b);
   make_spring(step, contact, row);
 }
 
@@ -367,7 +362,7 @@ const SpringContact* settle_hand_rows(ContactStep& step, const Island& island, c
     }
   }
   for (Grip& grip : step.grips) {
-    if (!grip.active || island.place_of(grip.body) < 0) continue;
+    if (!grip.active || !island.contains(grip.body)) continue;
     for (int point = 0; point < kGripPoints; ++point) settle_grip(step, *row++, point, grip);
   }
   return row;

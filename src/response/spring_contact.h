@@ -60,8 +60,8 @@ struct Spring {
 
   /// Evaluates the spring at the relative velocity `u` of 1 at the contact point and the relative spin about
   /// n. `renew_limits`: first sets Coulomb's limits by the normal force there.
-  [[gnu::always_inline]] inline void respond(const Triple& u, double spin, bool renew_limits,
-                                             SpringResponse& response);
+  [[gnu::always_inline]] inline void evaluate(const Triple& u, double spin, bool renew_limits,
+                                              SpringResponse& response);
 };
 
 /// A row of an island's contact problem: a spring and the points of its two bodies on which it acts.
@@ -146,7 +146,7 @@ inline double Spring::normal_force(double rate, double& slope) const {
   return force;
 }
 
-inline void Spring::respond(const Triple& u, double spin, bool renew_limits, SpringResponse& response) {
+inline void Spring::evaluate(const Triple& u, double spin, bool renew_limits, SpringResponse& response) {
   const double rate = u.dot(normal);
   const double load = response.normal_force = normal_force(rate, response.normal_slope);
   if (renew_limits) {
@@ -182,14 +182,11 @@ void make_spring(const ContactStep& step, const BodyContact& contact, SpringCont
 void settle(const ContactStep& step, const SpringContact& solved, Contact& contact);
 void settle(const ContactStep& step, const SpringContact& solved, BodyContact& contact);
 
-/// Look-ahead time of a touching spring: the step plus damping [s].
-double look_ahead(double step, bool damping);
+/// Look-ahead time of a spring: the step plus damping [s]. An open contact has no damping.
+double look_ahead(double step, bool damping, bool touches = true);
 
 /// Convex function of the velocities whose gradient is the response under the present limits [W].
 double potential(const Spring& spring, const Triple& u, double spin);
-
-/// Makes the spring of one point of a grip, which acts alike in all directions and has no normal force.
-void make_grip_spring(const ContactStep& step, const Grip& grip, int point, SpringContact& result);
 
 /// Makes the rows of the hands' contacts with an island, and of its grips.
 void make_hand_rows(const ContactStep& step, const Island& island, std::vector<SpringContact>& rows);

@@ -11,18 +11,18 @@
 namespace mrhi {
 namespace {
 
-constexpr int kFarthest = 1000;          // [m], on each axis
+constexpr int kMaxPosition = 1000;       // [m], on each axis
 constexpr double kUnitTolerance = 1e-9;  // of a quaternion's length; within it the bits are kept
 
 [[noreturn]] void refuse(const mr_hand_interaction::Hand& message, const std::string& what) {
   throw std::invalid_argument("hand " + std::to_string(message.id) + ": " + what);
 }
 
-double checked(const mr_hand_interaction::Hand& message, const char* name, float value, double most) {
+double checked(const mr_hand_interaction::Hand& message, const char* name, float value, double max) {
   const double number = static_cast<double>(value);
-  if (!(number >= 0.0 && number <= most))
+  if (!(number >= 0.0 && number <= max))
     refuse(message,
-           std::string(name) + " " + std::to_string(value) + " is not in 0 to " + std::to_string(most));
+           std::string(name) + " " + std::to_string(value) + " is not in 0 to " + std::to_string(max));
   return number;
 }
 
@@ -30,8 +30,8 @@ Vector3 checked(const mr_hand_interaction::Hand& message, const char* name,
                 const geometry_msgs::Point& point) {
   const Vector3 position = from_message(point);
   if (!position.allFinite()) refuse(message, std::string(name) + " is not finite");
-  if (position.cwiseAbs().maxCoeff() > kFarthest)
-    refuse(message, std::string(name) + " is farther than " + std::to_string(kFarthest) + " m");
+  if (position.cwiseAbs().maxCoeff() > kMaxPosition)
+    refuse(message, std::string(name) + " is farther than " + std::to_string(kMaxPosition) + " m");
   return position;
 }
 
@@ -65,7 +65,7 @@ void add_phalanx(const mr_hand_interaction::Hand& message, const mr_hand_interac
                           checked(message, "end of a phalanx", phalanx.end), radius};
 }
 
-Hand from_message(const mr_hand_interaction::Hand& message) {
+Hand checked_hand(const mr_hand_interaction::Hand& message) {
   if (message.side > mr_hand_interaction::Hand::RIGHT) refuse(message, "side is neither LEFT nor RIGHT");
   Hand hand;
   hand.id = message.id;
@@ -126,7 +126,7 @@ mr_hand_interaction::HandFrame to_message(const HandFrame& frame, const std::str
 HandFrame from_message(const mr_hand_interaction::HandFrame& message) {
   HandFrame frame;
   frame.stamp = from_ros_time(message.header.stamp);
-  for (const auto& hand : message.hands) frame.hands.push_back(from_message(hand));
+  for (const auto& hand : message.hands) frame.hands.push_back(checked_hand(hand));
   return frame;
 }
 

@@ -37,21 +37,21 @@ bool follows_another(const Hand& hand, int index) {
   return (hand.capsules[index].start - hand.capsules[index - 1].end).norm() < 1e-6;
 }
 
-constexpr double kMaxLength = 0.12;         // of an arrow for an infinite force [m]
-constexpr double kHalfLengthForce = 3.0;    // force whose arrow is half as long [N]
-constexpr double kLetters = 0.009;          // height of a force's number [m]
-constexpr double kNumberGap = 0.017;        // from an arrow to the middle of its number [m]
-constexpr double kMinLength = 0.004;        // [m]
-constexpr double kGap = 0.002;              // between the arrow and the back of the finger [m]
-constexpr double kPointSize = 0.005;        // [m]
-constexpr double kPieces = 28.0;            // of a ring
-constexpr double kLift = 0.0006;            // of a ring above the surface [m]
-constexpr double kHalfWidthImpulse = 0.02;  // impulse whose ring widens half as far as the widest [N s]
-constexpr double kMaxGrowth = 0.03;         // largest growth of a ring's radius [m]
-constexpr double kBroad = 0.004;            // initial width of an impact's ring [m]
+constexpr double kMaxArrowLength = 0.12;      // of an arrow for an infinite force [m]
+constexpr double kHalfLengthForce = 3.0;      // force whose arrow is half as long [N]
+constexpr double kLetterHeight = 0.009;       // height of a force's number [m]
+constexpr double kNumberGap = 0.017;          // from an arrow to the middle of its number [m]
+constexpr double kMinArrowLength = 0.004;     // [m]
+constexpr double kFingerGap = 0.002;          // between the arrow and the back of the finger [m]
+constexpr double kPointSize = 0.005;          // [m]
+constexpr double kRingSegments = 28.0;        // of a ring
+constexpr double kLiftAboveSurface = 0.0006;  // of a ring above the surface [m]
+constexpr double kHalfWidthImpulse = 0.02;    // impulse whose ring widens half as far as the widest [N s]
+constexpr double kMaxGrowth = 0.03;           // largest growth of a ring's radius [m]
+constexpr double kInitialWidth = 0.004;       // initial width of an impact's ring [m]
 
 Pose on_surface(const Vector3& point, const Vector3& normal) {
-  return {point + kLift * normal, rotation_between(Vector3::UnitZ(), normal)};
+  return {point + kLiftAboveSurface * normal, rotation_between(Vector3::UnitZ(), normal)};
 }
 
 /// Rings of one colour, set at each vertex too; rviz would otherwise light them and leave their sides black.
@@ -62,14 +62,13 @@ void add_rings(const std::vector<Contact>& contacts, ContactPhase of_phase, cons
   for (const Contact& contact : contacts) {
     if (phase(contact) != of_phase) continue;
     if (!rings) rings = &layer.add(id, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), paint);
-    add_ring({0.9 * contact.radius, 1.15 * contact.radius, 0.0, 1.0, kPieces},
+    add_ring({0.9 * contact.radius, 1.15 * contact.radius, 0.0, 1.0, kRingSegments},
              on_surface(contact.point, contact.normal), *rings);
   }
   if (rings) rings->colors.resize(rings->points.size(), paint);
 }
 
-/// Distance from a body's centre of mass to its surface along a direction [m]; that to its bounding sphere
-/// for a mesh, or if the centre is outside.
+/// Distance from a body's centre of mass to its surface, or to its bounding sphere if there is none [m].
 double surface_distance(const Body& body, const Pose& pose, const Vector3& direction) {
   double farthest = 0.0;
   for (const PlacedShape& placed : body.shapes) {
@@ -93,24 +92,24 @@ struct ForceMarkers {
     const int this_id = id++;
     const double newtons = force.norm();
     if (newtons < style.least_force) return;
-    const double length = kMaxLength * newtons / (newtons + kHalfLengthForce);
-    if (length < kMinLength) return;
+    const double length = kMaxArrowLength * newtons / (newtons + kHalfLengthForce);
+    if (length < kMinArrowLength) return;
     const Vector3 outwards = (pulls ? 1.0 : -1.0) / newtons * force;
     const Vector3 inner = place + distance * outwards, outer = inner + length * outwards;
     const std_msgs::ColorRGBA& paint = pulls ? style.assist : style.forces;
     add_arrow({pulls ? inner : outer, pulls ? outer : inner, 0.00175, 0.0045, std::min(0.014, 0.5 * length)},
               paint, this_id, arrows);
     numbers
-        .add(this_id, Marker::TEXT_VIEW_FACING, {outer + kNumberGap * outwards}, Vector3::Constant(kLetters),
-             paint)
+        .add(this_id, Marker::TEXT_VIEW_FACING, {outer + kNumberGap * outwards},
+             Vector3::Constant(kLetterHeight), paint)
         .text = text::format("%.1f N", newtons);
   }
 };
 
 /// Blue to orange by way of white, which colour-blind people can distinguish.
-std_msgs::ColorRGBA share_color(double share) {
+std_msgs::ColorRGBA utilisation_color(double utilisation) {
   const Vector3 blue(0.000, 0.447, 0.698), white(1.0, 1.0, 1.0), orange(0.835, 0.369, 0.000);
-  const double s = std::clamp(share, 0.0, 1.0);
+  const double s = std::clamp(utilisation, 0.0, 1.0);
   const Vector3 mixed = s < 0.5 ? Vector3(blue + 2.0 * s * (white - blue))
                                 : Vector3(white + (2.0 * s - 1.0) * (orange - white));
   return color(mixed.x(), mixed.y(), mixed.z());
@@ -219,17 +218,18 @@ void add_contacts(const Scene& scene, const FrameResult& result, const Simulatio
     Marker& shares = add_balls("share", 2.0 * kPointSize, color(1.0, 1.0, 1.0));
     for (const Contact& contact : result.contacts) {
       const FrictionUse use = friction_use(contact, scene.bodies[contact.key.body].material);
-      shares.colors.push_back(share_color(use.limit > 0.0 ? use.tangential / use.limit : 0.0));
+      shares.colors.push_back(utilisation_color(use.limit > 0.0 ? use.tangential / use.limit : 0.0));
     }
   }
   const MarkerLayer arrows = layers.layer("forces"), numbers = layers.layer("newtons");
   ForceMarkers forces{style, arrows, numbers};
   for (const Contact& contact : result.contacts)
-    forces.add(contact.force, contact.point, 2.0 * contact.radius + kGap, false);
+    forces.add(contact.force, contact.point, 2.0 * contact.radius + kFingerGap, false);
   for (const GraspSupport& assist : result.assists) {
     const Pose& pose = state.bodies[assist.body].pose;
     forces.add(assist.force, pose.position,
-               surface_distance(scene.bodies[assist.body], pose, assist.force.normalized()) + kGap, true);
+               surface_distance(scene.bodies[assist.body], pose, assist.force.normalized()) + kFingerGap,
+               true);
   }
 }
 
@@ -259,13 +259,14 @@ void ImpactMarkers::add(const ros::Time& now, const PictureStyle& style, const M
   int id = 0;
   for (const Impact& impact : impacts_) {
     if (impact.impulse < style.least_impulse) continue;
-    const double gone = age(impact) / kSeen;
+    const double elapsed = age(impact) / kSeen;
     const double strength = impact.impulse / (impact.impulse + kHalfWidthImpulse);
-    const double inner = impact.radius + (0.35 + gone) * strength * kMaxGrowth;
+    const double inner = impact.radius + (0.35 + elapsed) * strength * kMaxGrowth;
     Marker& ring = layer.add(id++, Marker::TRIANGLE_LIST, Pose{}, Vector3::Ones(), style.impacts);
-    add_ring({inner, inner + (1.0 - 0.6 * gone) * kBroad}, on_surface(impact.point, impact.normal), ring);
+    add_ring({inner, inner + (1.0 - 0.6 * elapsed) * kInitialWidth}, on_surface(impact.point, impact.normal),
+             ring);
     std_msgs::ColorRGBA paint = style.impacts;
-    paint.a *= static_cast<float>((1.0 - gone) * (1.0 - gone));
+    paint.a *= static_cast<float>((1.0 - elapsed) * (1.0 - elapsed));
     ring.colors.assign(ring.points.size(), paint);
   }
 }

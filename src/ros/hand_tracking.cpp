@@ -19,8 +19,7 @@
 
 namespace mrhi {
 
-/// A message of any type, as its bytes. A topic_tools::ShapeShifter has the text of the type's definition
-/// too, and copies it with each message.
+/// The bytes of any message. A topic_tools::ShapeShifter would also copy the definition each time.
 struct AnyMessage {
   std::vector<std::uint8_t> bytes;
 };
@@ -34,9 +33,7 @@ struct MD5Sum<mrhi::AnyMessage> {
   static const char* value() { return "*"; }
 };
 template <>
-struct DataType<mrhi::AnyMessage> {
-  static const char* value() { return "*"; }
-};
+struct DataType<mrhi::AnyMessage> : MD5Sum<mrhi::AnyMessage> {};
 }  // namespace message_traits
 namespace serialization {
 template <>
@@ -81,15 +78,10 @@ class TrackerTransforms : public TransformMemory {
 
   TrackerTransforms(ros::NodeHandle node, InputStatistics& statistics) : statistics_(statistics) {
     constexpr std::uint32_t kMaxFixed = 100, kMaxWaiting = 1000;  // a second of messages, the longest wait
-    using Take = boost::function<void(const Arrival&)>;
     ros::NodeHandle later(node);
     later.setCallbackQueue(&waiting_);
-    moving_ = later.subscribe<tf2_msgs::TFMessage>("/tf", kMaxWaiting,
-                                                   Take([this](const Arrival& arrival) { take(arrival); }));
-    fixed_ = node.subscribe<tf2_msgs::TFMessage>(
-        "/tf_static", kMaxFixed, Take([this](const Arrival& arrival) {
-          for (const auto& transform : arrival.getConstMessage()->transforms) set_fixed(transform);
-        }));
+    moving_ = later.subscribe("/tf", kMaxWaiting, &TrackerTransforms::take, this);
+    fixed_ = node.subscribe("/tf_static", kMaxFixed, &TrackerTransforms::take_fixed, this);
   }
 
   /// Takes the messages that wait.
@@ -105,6 +97,10 @@ class TrackerTransforms : public TransformMemory {
       const std::string why = set(transform, from_ros_time(arrival.getReceiptTime()));
       if (!why.empty()) statistics_.rejected(kReason, why);
     }
+  }
+
+  void take_fixed(const tf2_msgs::TFMessage& message) {
+    for (const auto& transform : message.transforms) set_fixed(transform);
   }
 
   InputStatistics& statistics_;
@@ -155,8 +151,7 @@ struct HandTracking::Impl {
         nullptr, ros::TransportHints().tcpNoDelay());
   }
 
-  /// roscpp fixes a topic's type at its first message, so a publisher of another type or version needs a new
-  /// subscription.
+  /// roscpp fixes the type at the first message: another type or version needs a new subscription.
   void accept_other_types() {
     for (Source& source : sources_) {
       const bool connected = source.subscriber.getNumPublishers() > 0;
@@ -207,8 +202,7 @@ struct HandTracking::Impl {
     statistics_.taken(to_seconds(from_ros_time(ros::Time::now()) - frame.stamp));
   }
 
-  /// Frames with stray stamps are passed to the simulation, which checks the following ones, but not
-  /// published on hand_frame.
+  /// The simulation gets stray stamps too, as it checks the following ones; hand_frame does not.
   bool accept_stamp(Nanoseconds stamp) {
     const Nanoseconds last = stamps_.last;
     const StampVerdict verdict = stamps_.check(stamp);

@@ -79,15 +79,15 @@ class SimulationCost {
     last_[calls_++ % last_.size()] = cost;
   }
 
-  /// Time that a call can simulate within kLongestCall. The cheapest of the last calls counts, as others may
+  /// Time that a call can simulate within kMaxCallTime. The cheapest of the last calls counts, as others may
   /// have waited for a processor.
   Nanoseconds affordable() const {
     const double cost = *std::min_element(last_.begin(), last_.end());
-    return static_cast<Nanoseconds>(1e9 * std::min(kLongestCall / std::max(cost, 1e-9), 1e6));
+    return static_cast<Nanoseconds>(1e9 * std::min(kMaxCallTime / std::max(cost, 1e-9), 1e6));
   }
 
  private:
-  static constexpr double kLongestCall = 0.05;  // [s]: services wait for the frames before them
+  static constexpr double kMaxCallTime = 0.05;  // [s]: services wait for the frames before them
   std::array<double, 4> last_{};                // wall time over simulated time
   std::size_t calls_ = 0;
 };
@@ -96,16 +96,16 @@ class SimulationCost {
 /// moment, and a scene that followed it would be reset on its return.
 class ClockLeaps {
  public:
-  bool look(Nanoseconds now) {
-    const Nanoseconds before = std::exchange(looked_, now), stride = std::exchange(stride_, now - before);
-    return before != 0 && stride_ > kLeap && stride_ / 4 > stride;
+  bool detect(Nanoseconds now) {
+    const Nanoseconds before = std::exchange(last_now_, now), stride = std::exchange(stride_, now - before);
+    return before != 0 && stride_ > kMinLeap && stride_ / 4 > stride;
   }
 
  private:
-  static constexpr Nanoseconds kLeap =
+  static constexpr Nanoseconds kMinLeap =
       1'000'000'000;  // and farther than four times the last interval, as a clock may be fast
 
-  Nanoseconds looked_ = 0, stride_ = 0;  // time of the last look, and its interval from the one before
+  Nanoseconds last_now_ = 0, stride_ = 0;  // of the last call, and its interval from the one before
 };
 
 /// Publishes `simulation_input`: all inputs of a simulation, in order, after they are applied. A new
@@ -138,7 +138,6 @@ class InputLog {
 
   using SimulationInput = mr_hand_interaction::SimulationInput;
 
-  void change(const Change& change) { send(note_change(change), {}); }
   /// Records a change, and returns its input without files, for send().
   SimulationInput note_change(const Change& change) {
     note(change, simulation_, world_);

@@ -41,10 +41,10 @@ class InputStatistics {
     refusals.last = detail;
     const ros::SteadyTime now = ros::SteadyTime::now();
     const ros::WallDuration since =
-        refusals.logged.isZero() ? ros::WallDuration(kLongestSilence) : now - refusals.logged;
+        refusals.logged.isZero() ? ros::WallDuration(kMaxSilence) : now - refusals.logged;
     if (since.toSec() < refusals.silence) return;
-    const bool go_on = since.toSec() < 2.0 * refusals.silence;
-    refusals.silence = go_on ? std::min(2.0 * refusals.silence, kLongestSilence) : kShortestSilence;
+    const bool continues = since.toSec() < 2.0 * refusals.silence;
+    refusals.silence = continues ? std::min(2.0 * refusals.silence, kMaxSilence) : kMinSilence;
     refusals.logged = now;
     ROS_WARN_STREAM(reason << ": " << detail << " (" << refusals.count << " so far)");
   }
@@ -57,7 +57,7 @@ class InputStatistics {
   std::uint64_t lost() const { return lost_.count; }
   /// Notes the time from a frame's arrival to the end of its processing [s].
   void waited(double seconds) {
-    if (seconds > kLate) ++late_.count;
+    if (seconds > kMaxWait) ++late_.count;
   }
   /// Counts since the start; rate and latency since the last report.
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -89,8 +89,8 @@ class InputStatistics {
   }
 
  private:
-  static constexpr double kLate = 0.05;  // processing times beyond this are late [s]
-  static constexpr double kShortestSilence = 5.0, kLongestSilence = 60.0;  // between two lines of a kind [s]
+  static constexpr double kMaxWait = 0.05;  // from arrival to end of processing; late beyond it [s]
+  static constexpr double kMinSilence = 5.0, kMaxSilence = 60.0;  // between two lines of a kind [s]
 
   struct Count {
     std::uint64_t count = 0, reported = 0;  ///< now, and at the last report
@@ -98,7 +98,7 @@ class InputStatistics {
   struct Refusals : Count {
     std::string last;
     ros::SteadyTime logged;
-    double silence = kShortestSilence;  ///< until the next line [s]
+    double silence = kMinSilence;  ///< until the next line [s]
   };
 
   std::uint64_t taken_ = 0;
@@ -140,17 +140,16 @@ class NodeDiagnostics : public InputStatistics {
   ros::SteadyTimer timer_;
 };
 
-/// Counts messages that have not arrived (full queue or lost transmission), by a publisher's sequence
-/// numbers.
+/// Counts messages that have not arrived, by the sequence numbers of their publishers.
 class SequenceWatch {
  public:
   /// Number missing before this one. A number that goes back or far ahead restarts the count.
   std::uint64_t missing(const std::string& publisher, std::uint32_t sequence) {
-    constexpr std::uint32_t kFar = 1'000'000;
+    constexpr std::uint32_t kMaxStep = 1'000'000;
     const auto [known, is_new] = last_.try_emplace(publisher, sequence);
     const std::uint32_t step = sequence - known->second;
     known->second = sequence;
-    return is_new || step == 0 || step > kFar ? 0 : step - 1;
+    return is_new || step == 0 || step > kMaxStep ? 0 : step - 1;
   }
 
  private:

@@ -10,7 +10,6 @@
 #include <std_srvs/Trigger.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cinttypes>
 #include <limits>
 #include <stdexcept>
@@ -29,6 +28,7 @@
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/ros/package_paths.h"
 #include "mr_hand_interaction/scene/save_scene.h"
+#include "node.h"
 #include "result_messages.h"
 #include "result_publisher.h"
 
@@ -37,7 +37,7 @@ namespace {
 
 constexpr int kHandQueue = 10;
 constexpr Nanoseconds kNoTime = std::numeric_limits<Nanoseconds>::min();  // before all others
-constexpr Nanoseconds kSlack = 100'000'000;  // delay after which a frame may still arrive
+constexpr Nanoseconds kMaxDelay = 100'000'000;                            // of a frame's arrival
 const ros::WallDuration kIdlePeriod(1.0 / 30);
 
 /// Keeps the scene's own gravity, as the configuration's may be removed later.
@@ -63,17 +63,12 @@ Tuning::Values values_of(const mr_hand_interaction::SetParameter::Request& reque
 }
 
 /// An object's pose is in tf by its name: a tracker in a frame of that name would move with the object.
-void require_no_frame(const std::string& name, const std::string& fixed_frame) {
+void require_no_frames(const Scene& scene, const std::string& fixed_frame) {
   for (const std::string& frame : {without_slash(fixed_frame), std::string("leap_hands")}) {
-    if (name == frame)
-      throw std::invalid_argument("object '" + name + "': this name is not allowed; allowed: any but '" +
+    if (const auto body = find_body(scene, frame); body && !scene.bodies[*body].fixed)
+      throw std::invalid_argument("object '" + frame + "': this name is not allowed; allowed: any but '" +
                                   frame + "', which is a frame in tf");
   }
-}
-
-void require_no_frames(const Scene& scene, const std::string& fixed_frame) {
-  for (const Body& body : scene.bodies)
-    if (!body.fixed) require_no_frame(body.name, fixed_frame);
 }
 
 Scene scene_of(const ServerParameters& parameters) {
@@ -106,14 +101,14 @@ struct InteractionServer::Impl {
         placing_(private_node, fixed_frame_),
         tuning_(private_node, parameters.place_by_mouse,
                 {[this](const Tuning::Values& values) { change_parameters(values); },
-                 [this](bool on) { placing_.turn(on, live_.simulation()); },
+                 [this](bool on) { placing_.enable(on, live_.simulation()); },
                  [this]() -> const Simulation& { return live_.simulation(); },
                  [this](const auto& task) { between_frames_.run_beside(task); }}) {
     // Separate: all values of the other status are numbers, and a hash is not.
     diagnostics_.add("state", [this](auto& status) { report_state(status); });
     if (parameters.standard_outputs) results_.add_standard_outputs(node);
     results_.show(live_.simulation());
-    placing_.turn(parameters.place_by_mouse, live_.simulation());
+    placing_.enable(parameters.place_by_mouse, live_.simulation());
     advertise_services(private_node);
     between_frames_.start();
     idle_timer_ = node.createSteadyTimer(kIdlePeriod, [this](const ros::SteadyTimerEvent&) { idle(); });
@@ -123,19 +118,18 @@ struct InteractionServer::Impl {
   ~Impl() { between_frames_.stop(); }
 
   void subscribe(ros::NodeHandle& node) {
-    using Arrival = ros::MessageEvent<const mr_hand_interaction::HandFrame>;
-    const auto handler = [this](const Arrival& arrival) {
-      const auto& message = *arrival.getConstMessage();
-      note_lost(sequences_.missing(arrival.getPublisherName(), message.header.seq));
-      try {
-        take(from_message(message), message.header.frame_id, arrival.getReceiptTime());
-      } catch (const std::invalid_argument& error) {
-        diagnostics_.rejected("unusable hand", error.what());
-      }
-    };
-    hands_ = node.subscribe<mr_hand_interaction::HandFrame>("hand_frame", kHandQueue,
-                                                            boost::function<void(const Arrival&)>(handler),
-                                                            nullptr, ros::TransportHints().tcpNoDelay());
+    hands_ = node.subscribe("hand_frame", kHandQueue, &Impl::take_message, this,
+                            ros::TransportHints().tcpNoDelay());
+  }
+
+  void take_message(const ros::MessageEvent<const mr_hand_interaction::HandFrame>& arrival) {
+    const auto& message = *arrival.getConstMessage();
+    note_lost(sequences_.missing(arrival.getPublisherName(), message.header.seq));
+    try {
+      take(from_message(message), message.header.frame_id, arrival.getReceiptTime());
+    } catch (const std::invalid_argument& error) {
+      diagnostics_.rejected("unusable hand", error.what());
+    }
   }
 
   void take(HandFrame frame, const std::string& frame_id, const ros::Time& arrival) {
@@ -164,7 +158,7 @@ struct InteractionServer::Impl {
     measured([&] {
       rejection = live_.simulation().begin(frame, expected);
       if (rejection != Rejection::none) return;
-      while (timed_step()) results_.note_step();
+      while (step_times_.measure([&] { return live_.simulation().step(); })) results_.note_step();
     });
     if (rejection != Rejection::none) {
       log_.frame(std::move(frame), frame_id, expected);
@@ -198,9 +192,8 @@ struct InteractionServer::Impl {
     if (started) cost_.note(live_.simulation().time() - from, ros::SteadyTime::now() - begin);
   }
 
-  /// Leaves out time before `time` that is too long to simulate now; what comes a step after `earliest`
-  /// stays. Otherwise a scene slower than real time has ever more to simulate in a call. Returns the time
-  /// left out.
+  /// Leaves out time before `time` that is too long to simulate now, but nothing up to a step after
+  /// `earliest`: a scene slower than real time would have ever more to simulate. Returns the time left out.
   Nanoseconds leave_out_before(Nanoseconds time, Nanoseconds earliest) {
     const Simulation& simulation = live_.simulation();
     if (!simulation.state().started) return 0;
@@ -231,9 +224,7 @@ struct InteractionServer::Impl {
   /// `work` returns a description of its change, or throws the reason for refusing it.
   template <class Service, class Work>
   void serve(ros::NodeHandle& node, const char* name, Work work) {
-    using Request = typename Service::Request;
-    using Response = typename Service::Response;
-    const auto handler = [work](Request& request, Response& response) {
+    services_.push_back(mrhi::serve<Service>(node, name, [work](const auto& request, auto& response) {
       try {
         response.message = work(request);
         response.success = true;
@@ -242,10 +233,7 @@ struct InteractionServer::Impl {
         response.success = false;
         ROS_WARN("refused: %s", error.what());
       }
-      return true;
-    };
-    services_.push_back(
-        node.advertiseService<Request, Response>(name, boost::function<bool(Request&, Response&)>(handler)));
+    }));
   }
 
   void advertise_services(ros::NodeHandle& node) {
@@ -253,7 +241,7 @@ struct InteractionServer::Impl {
     serve<std_srvs::Trigger>(node, "reset", [this](auto&) { return reset(); });
     serve<std_srvs::SetBool>(node, "pause", [this](auto& request) { return pause(request.data); });
     serve<std_srvs::SetBool>(node, "restrain", [this](auto& request) {
-      make(Restrain{request.data != 0});
+      apply(Restrain{request.data != 0});
       return std::string(request.data != 0 ? "restrained" : "free");
     });
     serve<SaveWorld>(node, "save", [this](auto& request) { return save(request.file); });
@@ -262,14 +250,6 @@ struct InteractionServer::Impl {
     ros::NodeHandle beside = between_frames_.node_beside(node);
     serve<SpawnObject>(beside, "spawn", [this](auto& request) { return spawn(from_message(request)); });
     serve<SpawnUrdf>(beside, "spawn_urdf", [this](auto& request) { return spawn(from_message(request)); });
-  }
-
-  bool timed_step() {
-    const auto begin = std::chrono::steady_clock::now();
-    if (!live_.simulation().step()) return false;
-    const auto time = std::chrono::steady_clock::now() - begin;
-    step_times_.add(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
-    return true;
   }
 
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -293,10 +273,10 @@ struct InteractionServer::Impl {
 
   void idle() {
     const ros::Time now = ros::Time::now();
-    if (clock_leaps_.look(from_ros_time(now))) return;
+    if (clock_leaps_.detect(from_ros_time(now))) return;
     const Nanoseconds stamp = clock_.stamp(now);
     const bool running = !clock_.paused() && live_.simulation().state().started;
-    Nanoseconds until = clock_.to_simulation(stamp) - kSlack;
+    Nanoseconds until = clock_.to_simulation(stamp) - kMaxDelay;
     const ros::WallDuration since = ros::SteadyTime::now() - results_.shown();
     ros::WallDuration next = kIdlePeriod;
     if (running) until -= leave_out_before(until, end_of_hold());
@@ -309,15 +289,15 @@ struct InteractionServer::Impl {
     } else if (since > kIdlePeriod * 0.5) {
       place_dragged();
       results_.publish_scene(live_.simulation().result(), to_ros_time(stamp));
-    } else if (!placing_.is_on()) {  // frames come: look again when the next ones would be missing
-      next = ros::WallDuration(to_seconds(kSlack)) - since;
+    } else if (!placing_.is_on()) {  // frames come: check again when the next ones are overdue
+      next = ros::WallDuration(to_seconds(kMaxDelay)) - since;
     }
     placing_.follow(live_.simulation());
     if (next != std::exchange(idle_period_, next)) idle_timer_.setPeriod(next);
   }
 
   std::string reset() {
-    make(Reset{});
+    apply(Reset{});
     results_.show(live_.simulation());
     FrameResult start;
     start.stamp = clock_.to_simulation(clock_.stamp(ros::Time::now()));
@@ -328,12 +308,11 @@ struct InteractionServer::Impl {
   std::string pause(bool paused) {
     if (!clock_.paused()) while_paused_ = clock_.check();
     paused ? clock_.pause(ros::Time::now()) : clock_.resume(ros::Time::now());
-    make(Pause{paused});
+    apply(Pause{paused});
     return paused ? "paused" : "running";
   }
 
-  /// Returns the added object and assumptions about it. Runs concurrently with frames, which do not wait for
-  /// file access.
+  /// Returns the added object and assumptions about it. Runs beside frames: reading files takes long.
   std::string spawn(const ObjectRequest& request) {
     SceneOptions options;
     between_frames_.run([&] { options = options_of(live_.simulation().configuration()); });
@@ -345,7 +324,7 @@ struct InteractionServer::Impl {
     InputLog::SimulationInput input;
     const Change change = spawn;
     between_frames_.run([&] {
-      mrhi::make(change, live_);
+      apply_change(change, live_);
       input = log_.note_change(change);
       show_change();
     });
@@ -373,7 +352,7 @@ struct InteractionServer::Impl {
   }
 
   std::string remove(const std::string& name) {
-    make(Delete{name});
+    apply(Delete{name});
     show_change();
     return "'" + name + "' is gone";
   }
@@ -388,14 +367,14 @@ struct InteractionServer::Impl {
   }
 
   /// Applies and logs a change of the simulation. All changes but spawn() use this function.
-  void make(const Change& change) {
+  void apply(const Change& change) {
     results_.publish_events(events_ended_by(change, live_));
-    mrhi::make(change, live_);
-    log_.change(change);
+    apply_change(change, live_);
+    log_.send(log_.note_change(change), {});
   }
 
   void change_parameters(const Tuning::Values& values) {
-    make(SetParameters{values});
+    apply(SetParameters{values});
     show_change();
   }
 
@@ -411,7 +390,7 @@ struct InteractionServer::Impl {
   void place_dragged() {
     for (const auto& [name, pose] : placing_.dragged()) {
       try {
-        make(PlaceObject{name, pose});
+        apply(PlaceObject{name, pose});
       } catch (const std::invalid_argument&) {
         // The mouse is out of bounds, or its object is gone: the last valid state stays.
       }

@@ -29,6 +29,9 @@ template <class Message>
 Vector3 vector(const Message& message) {
   return {message.x, message.y, message.z};
 }
+Vector3 vector(const geometry_msgs::Pose_<Bounded>& pose) {
+  return vector(pose.position);
+}
 
 /// Drivers leave unknown points at zero; no part of a hand is exactly at the device's origin.
 std::optional<Vector3> known(const Vector3& point) {
@@ -38,8 +41,7 @@ std::optional<float> known(float length) {
   return length == 0.0f ? std::nullopt : std::make_optional(length);
 }
 
-/// Elements of a list by their type number, 0..Size-1, each at most once. `package` and `name` are for
-/// errors.
+/// Elements of a list by their type, 0..Size-1, each at most once. `package`, `name`: for errors.
 template <std::size_t Size, class List>
 std::array<const typename List::value_type*, Size> by_type(const List& list, const char* package,
                                                            const char* name) {
@@ -68,13 +70,6 @@ Vector3 wrist_of(const Hand& hand) {
   return {wrist[0], wrist[1], wrist[2]};
 }
 
-Vector3 position(const geometry_msgs::Pose_<Bounded>& pose) {
-  return vector(pose.position);
-}
-Vector3 position(const geometry_msgs::Point_<Bounded>& point) {
-  return vector(point);
-}
-
 float width_of(const msg::LeapControllerFinger_<Bounded>&) {
   return 0.0f;
 }
@@ -98,8 +93,8 @@ void read_fingers(const Hand& message, const char* package, HandJoints& hand) {
       if (bones[b] == nullptr) continue;
       // A bone starts where the previous one ends; a value that is not finite must not be overwritten.
       auto& joint = hand.joints[f][b];
-      if (!joint || joint->allFinite()) joint = position(bones[b]->bone_start);
-      hand.joints[f][b + 1] = position(bones[b]->bone_end);
+      if (!joint || joint->allFinite()) joint = vector(bones[b]->bone_start);
+      hand.joints[f][b + 1] = vector(bones[b]->bone_end);
       hand.bone_width[f][b] = known(width_of(*bones[b]));
     }
   }
@@ -164,8 +159,7 @@ const HandJoints* hand_of(const JointsFrame& frame, Side side) {
   return found;
 }
 
-/// Direction and normal in Leap's convention: towards the fingers, and out of the palm. Zero if a joint is
-/// missing.
+/// Unit vectors towards the fingers and out of the palm, as the driver has; zero if a joint is missing.
 struct PalmAxes {
   Vector3 direction = Vector3::Zero(), normal = Vector3::Zero();
 
@@ -180,8 +174,7 @@ struct PalmAxes {
   }
 };
 
-/// Leap's basis (x, y, z in columns) of a bone, converted to a quaternion as the driver does: from its
-/// transpose.
+/// Orientation of a bone as the driver computes it: from the transpose of its basis (x, y, z in columns).
 Quaternion driver_orientation(const Vector3& along, const Vector3& palm_normal) {
   const Vector3 backwards = -along;
   const Vector3 side = (-palm_normal).cross(backwards);
@@ -285,7 +278,7 @@ LeapFrame read_leap_controller(std::vector<std::uint8_t> bytes) {
   hand.id = static_cast<std::uint32_t>(message.lmc_hand_id);
   hand.grab_strength = message.grab_strength;
   hand.pinch_strength = message.pinch_strength;
-  hand.palm_centre = known(position(message.palm_center));
+  hand.palm_centre = known(vector(message.palm_center));
   read_fingers(message, "leap_motion_controller", hand);
   LeapFrame frame = frame_with(message.header);
   frame.joints.hands.push_back(std::move(hand));

@@ -49,9 +49,6 @@ class BetweenFrames {
     spinner_.stop();
   }
 
-  BetweenFrames(const BetweenFrames&) = delete;
-  BetweenFrames& operator=(const BetweenFrames&) = delete;
-
   /// A node handle whose services run in the separate thread, after start().
   ros::NodeHandle node_beside(const ros::NodeHandle& node) {
     ros::NodeHandle beside(node);
@@ -92,14 +89,13 @@ class BetweenFrames {
   ros::AsyncSpinner spinner_{1, &beside_};
 };
 
-/// Interactive markers that move free objects with the mouse in rviz, at ~place. Feedback arrives in the
-/// server's own thread; dragged() polls it.
+/// Interactive markers at ~place that move free objects. Feedback arrives in a thread; dragged() polls it.
 class Placing {
  public:
   Placing(const ros::NodeHandle& private_node, const std::string& fixed_frame)
       : topic_(private_node.resolveName("place")), fixed_frame_(fixed_frame) {}
 
-  void turn(bool on, const Simulation& simulation) {
+  void enable(bool on, const Simulation& simulation) {
     if (on == (server_ != nullptr)) return;
     // With a thread of its own it ends that before its publishers, to which a timer of it publishes.
     constexpr bool kOwnThread = true;
@@ -130,15 +126,14 @@ class Placing {
     });
   }
 
-  /// Poses at which the mouse holds objects. Excludes objects that were released, or without feedback for
-  /// kSilence.
+  /// Poses at which the mouse holds objects, as of the last kMaxSilence.
   std::map<std::string, Pose> dragged() {
     std::map<std::string, Pose> poses;
     if (!server_) return poses;
     const std::lock_guard<std::mutex> lock(drags_mutex_);
-    const ros::SteadyTime silent_since = ros::SteadyTime::now() - ros::WallDuration(kSilence);
+    const ros::SteadyTime silent_since = ros::SteadyTime::now() - ros::WallDuration(kMaxSilence);
     for (auto drag = drags_.begin(); drag != drags_.end();) {
-      if (drag->second.heard < silent_since) {
+      if (drag->second.last_feedback < silent_since) {
         drag = drags_.erase(drag);
         continue;
       }
@@ -154,8 +149,8 @@ class Placing {
   using Feedback = visualization_msgs::InteractiveMarkerFeedback;
 
   /// rviz repeats feedback four times a second while the mouse button is down.
-  static constexpr double kSilence = 1.0;  // [s]
-  static constexpr double kRoom = 2.6;     // size of the handles, over the body's radius
+  static constexpr double kMaxSilence = 1.0;   // [s]
+  static constexpr double kHandleScale = 2.6;  // size of the handles, over the body's radius
 
   template <class Use>
   void each_movable(const Simulation& simulation, const Use& use) {
@@ -171,15 +166,15 @@ class Placing {
     InteractiveMarker marker;
     marker.header.frame_id = frame;
     marker.name = body.name;
-    marker.scale = static_cast<float>(kRoom * body.bounding_radius);
+    marker.scale = static_cast<float>(kHandleScale * body.bounding_radius);
     marker.pose = to_message(pose);
     for (int axis = 0; axis < 3; ++axis) {
       InteractiveMarkerControl control;
-      const Quaternion turn = rotation_between(Vector3::UnitX(), Vector3::Unit(axis));
-      control.orientation = to_message(Pose{Vector3::Zero(), turn}).orientation;
-      for (const bool turns : {false, true}) {
-        control.name = std::string(turns ? "turn " : "move ") + "xyz"[axis];
-        control.interaction_mode = turns ? control.ROTATE_AXIS : control.MOVE_AXIS;
+      const Quaternion along_axis = rotation_between(Vector3::UnitX(), Vector3::Unit(axis));
+      control.orientation = to_message(Pose{Vector3::Zero(), along_axis}).orientation;
+      for (const bool rotates : {false, true}) {
+        control.name = std::string(rotates ? "turn " : "move ") + "xyz"[axis];
+        control.interaction_mode = rotates ? control.ROTATE_AXIS : control.MOVE_AXIS;
         marker.controls.push_back(control);
       }
     }
@@ -188,14 +183,14 @@ class Placing {
 
   struct Drag {
     Pose pose;
-    ros::SteadyTime heard;
+    ros::SteadyTime last_feedback;
   };
   void take(const Feedback& feedback) {
     const std::lock_guard<std::mutex> lock(drags_mutex_);
     const auto drag = drags_.find(feedback.marker_name);
     if (feedback.event_type == Feedback::MOUSE_UP && drag != drags_.end()) drags_.erase(drag);
     if (feedback.event_type == Feedback::KEEP_ALIVE && drag != drags_.end())
-      drag->second.heard = ros::SteadyTime::now();
+      drag->second.last_feedback = ros::SteadyTime::now();
     Pose pose = from_message(feedback.pose);
     pose.orientation.normalize();
     const bool usable = pose.position.allFinite() && pose.orientation.coeffs().allFinite();
@@ -209,8 +204,7 @@ class Placing {
   std::map<std::string, Drag> drags_;
 };
 
-/// dynamic_reconfigure at ~tune, for interactive tuning. The node validates values, so a bad one is rejected
-/// instead of clamped.
+/// dynamic_reconfigure at ~tune. The node checks values, so a bad one is rejected, not clamped.
 class Tuning {
  public:
   using Config = mr_hand_interaction::TuneConfig;
@@ -235,8 +229,7 @@ class Tuning {
     server_.setCallback([this](Config& requested, std::uint32_t) { take(requested); });
   }
 
-  /// Ranges of the sliders of all numbers, from the parameters' table. Values beyond them are accepted within
-  /// the parameter's limits.
+  /// Ranges of the sliders. The limits of the parameters are wider.
   static void slider_ends(Config& min, Config& max) {
     dynamic_reconfigure::Config low = message_of(min), high = message_of(max);
     set_ends(low.ints, high.ints);
@@ -245,12 +238,11 @@ class Tuning {
     max.__fromMessage__(high);
   }
 
-  /// Schedules publishing of the present values: each number is a call to the master, and frames do not wait
-  /// for these.
+  /// Publishes the present values in another thread, as each number is a call to the master.
   void show() {
     shown_ = current();
-    const std::lock_guard<std::mutex> lock(asking_);
-    to_tell_ = shown_;
+    const std::lock_guard<std::mutex> lock(pending_mutex_);
+    pending_ = shown_;
     actions_.later([this] { publish_update(); });
   }
 
@@ -287,19 +279,16 @@ class Tuning {
 
   /// YAML of the parameters in the dialog. A check box selects a word instead of a number.
   static std::map<std::string, std::string> texts_of(const Config& config) {
-    std::map<std::string, std::string> names, texts;
-    for (const std::string& name : parameter_names()) names[field_of(name)] = name;
-    each_field(message_of(config), [&](const auto& field) {
-      if (const auto known = names.find(field.name); known != names.end())
-        texts[known->second] = text_of(field.value);
-    });
+    std::map<std::string, std::string> texts;
+    each_field(message_of(config),
+               [&](const auto& field) { texts[parameter_of(field.name)] = text_of(field.value); });
     texts["gravity"] = config.gravity_of_scene ? "scene" : text::exact(gravity_of(config));
     if (config.stiffness_of_model) texts["material/stiffness"] = "model";
     if (config.filter_noise_estimated) texts["filter/noise"] = "estimated";
     return texts;
   }
 
-  /// Parameter of a number in the dialog: gravity has one for each axis.
+  /// Parameter of a field of the dialog: gravity has one for each axis.
   static std::string parameter_of(const std::string& field) {
     for (const std::string& name : parameter_names()) {
       if (field_of(name) == field) return name;
@@ -326,8 +315,8 @@ class Tuning {
       ROS_WARN("not changed: %s", error.what());
     }
     requested = shown_ = current();
-    const std::lock_guard<std::mutex> lock(asking_);
-    to_tell_.reset();
+    const std::lock_guard<std::mutex> lock(pending_mutex_);
+    pending_.reset();
   }
 
   Config current() const {
@@ -367,12 +356,11 @@ class Tuning {
     return values;
   }
 
-  /// Locks the server's mutex first: its callback may have changed values that are newer than those to
-  /// publish.
+  /// Locks the mutex of the server first, as its callback may have set newer values.
   void publish_update() {
     const boost::recursive_mutex::scoped_lock server(mutex_);
-    std::unique_lock<std::mutex> lock(asking_);
-    const std::optional<Config> config = std::exchange(to_tell_, std::nullopt);
+    std::unique_lock<std::mutex> lock(pending_mutex_);
+    const std::optional<Config> config = std::exchange(pending_, std::nullopt);
     lock.unlock();
     if (config) server_.updateConfig(*config);
   }
@@ -383,8 +371,8 @@ class Tuning {
   boost::recursive_mutex mutex_;
   dynamic_reconfigure::Server<Config> server_;
 
-  std::mutex asking_;
-  std::optional<Config> to_tell_;
+  std::mutex pending_mutex_;
+  std::optional<Config> pending_;  ///< to publish
 };
 
 }  // namespace mrhi

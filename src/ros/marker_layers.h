@@ -18,25 +18,19 @@
 
 namespace mrhi {
 
-constexpr double kPassing = 0.5;  ///< lifetime of transient markers (hands, contacts), if the node stops [s]
-constexpr double kForEver = 0.0;
+constexpr double kTransientLifetime = 0.5;  ///< of hands and contacts, if the node stops [s]
+constexpr double kNoExpiry = 0.0;
 
 /// Adds markers of one layer to an array.
-class MarkerLayer {
- public:
-  MarkerLayer(visualization_msgs::MarkerArray& array, std_msgs::Header header, std::string name,
-              double lifetime)
-      : array_(array), header_(std::move(header)), name_(std::move(name)), lifetime_(lifetime) {}
+struct MarkerLayer {
+  visualization_msgs::MarkerArray& array;
+  std_msgs::Header header;
+  std::string name;
+  double lifetime;  ///< [s]; 0: unlimited
 
   /// Valid until the next call.
   visualization_msgs::Marker& add(int id, int type, const Pose& pose, const Vector3& scale,
                                   const std_msgs::ColorRGBA& color) const;
-
- private:
-  visualization_msgs::MarkerArray& array_;
-  std_msgs::Header header_;
-  std::string name_;
-  double lifetime_;  ///< [s]; 0: unlimited
 };
 
 /// The layers of an array, by name. A layer is added by a function that Markers::update calls.
@@ -44,7 +38,7 @@ struct MarkerLayers {
   visualization_msgs::MarkerArray& array;
   const std_msgs::Header& header;
 
-  MarkerLayer layer(const char* name, double lifetime = kPassing) const {
+  MarkerLayer layer(const char* name, double lifetime = kTransientLifetime) const {
     return {array, header, name, lifetime};
   }
 };
@@ -57,8 +51,7 @@ struct HandStyle {
   double thickness;  ///< fraction of the phalanges' radii
 };
 
-/// Spheres at the joints, cylinders along the bones and the palm, as simulated. Ids from `first_id`, less
-/// than kIdsPerHand.
+/// Draws joints as spheres, bones and palm as cylinders. Ids from `first_id`, less than kIdsPerHand.
 void add_capsules(const Hand& hand, const Touching& touching, const HandStyle& style, int first_id,
                   const MarkerLayer& layer);
 
@@ -95,8 +88,7 @@ class HandMarkers {
   std::vector<visualization_msgs::Marker> spare_;
 };
 
-/// Adds a vertex and its colour, by its normal (unit, world), in the lighting of hands: rviz's own leaves
-/// averted sides almost black.
+/// Adds a vertex lit like hands, by its unit normal in world. rviz leaves averted sides almost black.
 void add_lit(const Vector3& point, const Vector3& normal, const std_msgs::ColorRGBA& paint,
              visualization_msgs::Marker& marker);
 
@@ -117,8 +109,7 @@ visualization_msgs::Marker& add_arrow(const Arrow& arrow, const std_msgs::ColorR
 void add_contacts(const Scene& scene, const FrameResult& result, const SimulationState& state,
                   const PictureStyle& style, const MarkerLayers& layers);
 
-/// A flat ring about z, in the marker's own frame, from `begin` to `end` of a full turn, clockwise seen from
-/// z, starting at x.
+/// A flat ring about z, between two fractions of a turn: clockwise seen from z, from x on.
 struct Ring {
   double inner, outer;  // radii [m]
   double begin = 0.0, end = 1.0;
@@ -166,14 +157,12 @@ class ImpactMarkers {
   std::vector<Impact> impacts_;
 };
 
-/// Shadows of hands and of the first free bodies, vertically on the ground. They are softer and fainter for
-/// higher objects.
+/// Vertical shadows of hands and the first free bodies, softer and fainter for higher objects.
 class ShadowMarkers {
  public:
   /// Keeps a reference. `ground`: its height [m].
   ShadowMarkers(const Scene& scene, double ground) : scene_(scene), ground_(ground) {}
-  /// Adds shadows of objects that have moved since they were last added, or all; deletes those of hands that
-  /// are gone.
+  /// Adds shadows of objects that have moved, or all; deletes those of hands that are gone.
   void add(const SimulationState& state, const FrameResult& result, bool all, const MarkerLayer& layer);
 
  private:

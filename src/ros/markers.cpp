@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/predicate.hpp>
 #include <cmath>
 
 #include "../math/rotation.h"
@@ -48,21 +49,12 @@ std::string motion_of_operators(const Scene& scene, const SimulationState& state
   return all;
 }
 
-/// STL files have none.
-bool has_materials(const std::string& mesh) {
-  const std::size_t dot = mesh.rfind('.');
-  if (dot == std::string::npos) return false;
-  const std::string ending = mesh.substr(dot + 1);
-  return ending != "stl" && ending != "STL";
-}
-
 // Depths of a finger that make a body translucent [m]: a firm grasp closes 10 mm into what it holds, which
 // stays almost opaque.
-constexpr double kUnseen = 0.006, kDeep = 0.025;
+constexpr double kFadeBegin = 0.006, kFadeEnd = 0.025;
 constexpr double kMinOpacity = 0.6;
 
-/// A mesh stays opaque: viewers do not sort its triangles, so that a translucent one would show some of its
-/// far side.
+/// A mesh stays opaque: viewers do not sort its triangles, so its far side would show through.
 bool may_be_translucent(const Body& body) {
   const std::vector<Visual> shapes = drawn_shapes(body);
   return std::none_of(shapes.begin(), shapes.end(),
@@ -104,8 +96,7 @@ struct ShapeMarker {
     return marker;
   }
 
-  /// A shape without a marker type in rviz, as its support points in directions all around. A flat side would
-  /// be a single point, so only for round shapes.
+  /// A round shape without a marker type in rviz, by its support points all around.
   template <typename Round>
   Marker& operator()(const Round& shape) const {
     constexpr int kAround = 24, kRows = 13;  // odd: no row of directions is perpendicular to z
@@ -130,8 +121,7 @@ struct ShapeMarker {
 
 void add_deleting(int action, const std::pair<std::string, int>& key, const std_msgs::Header& header,
                   MarkerArray& array) {
-  array.markers.emplace_back();
-  Marker& marker = array.markers.back();
+  Marker& marker = array.markers.emplace_back();
   marker.header = header;
   marker.ns = key.first;
   marker.id = key.second;
@@ -159,10 +149,9 @@ void add_lit(const Vector3& point, const Vector3& normal, const std_msgs::ColorR
 
 Marker& MarkerLayer::add(int id, int type, const Pose& pose, const Vector3& scale,
                          const std_msgs::ColorRGBA& paint) const {
-  array_.markers.emplace_back();
-  Marker& marker = array_.markers.back();
-  marker.header = header_;
-  marker.ns = name_;
+  Marker& marker = array.markers.emplace_back();
+  marker.header = header;
+  marker.ns = name;
   marker.id = id;
   marker.type = type;
   marker.action = Marker::ADD;
@@ -171,7 +160,7 @@ Marker& MarkerLayer::add(int id, int type, const Pose& pose, const Vector3& scal
   marker.scale.y = scale.y();
   marker.scale.z = scale.z();
   marker.color = paint;
-  marker.lifetime = ros::Duration(lifetime_);
+  marker.lifetime = ros::Duration(lifetime);
   return marker;
 }
 
@@ -204,13 +193,13 @@ class BodyMarkers {
   /// Adds bodies whose appearance has changed, or all.
   void add(const SimulationState& state, const std::vector<Contact>& contacts, bool all,
            const MarkerLayers& layers) {
-    const MarkerLayer objects = layers.layer("objects", kForEver),
-                      fixtures = layers.layer("fixtures", kForEver);
+    const MarkerLayer objects = layers.layer("objects", kNoExpiry),
+                      fixtures = layers.layer("fixtures", kNoExpiry);
     now_.resize(scene_.bodies.size());
     for (std::size_t i = 0; i < now_.size(); ++i) now_[i] = {state.bodies[i].pose, 1.0};
     for (const Contact& contact : contacts) {
       if (!may_be_translucent(scene_.bodies[contact.key.body])) continue;
-      const double seen = std::clamp((contact.depth - kUnseen) / (kDeep - kUnseen), 0.0, 1.0);
+      const double seen = std::clamp((contact.depth - kFadeBegin) / (kFadeEnd - kFadeBegin), 0.0, 1.0);
       double& opacity = now_[contact.key.body].opacity;
       opacity = std::min(opacity, 1.0 - (1.0 - kMinOpacity) * seen);
     }
@@ -228,23 +217,24 @@ class BodyMarkers {
   }
 
  private:
-  struct Look {
+  struct Appearance {
     Pose pose;
     double opacity = 1.0;
   };
-  static void add_part(const Visual& drawn, const Look& look, const std::string& body, int id,
+  static void add_part(const Visual& drawn, const Appearance& appearance, const std::string& body, int id,
                        const MarkerLayer& layer) {
     const auto& c = drawn.rgba;
-    Marker& marker = add_shape(drawn.shape, look.pose * drawn.pose,
-                               color(c[0], c[1], c[2], look.opacity * c[3]), id, layer);
+    Marker& marker = add_shape(drawn.shape, appearance.pose * drawn.pose,
+                               color(c[0], c[1], c[2], appearance.opacity * c[3]), id, layer);
     marker.text = body;
-    if (drawn.has_color || !has_materials(marker.mesh_resource)) return;
+    const std::string& mesh = marker.mesh_resource;
+    if (drawn.has_color || mesh.empty() || boost::iends_with(mesh, ".stl")) return;  // STL has no materials
     marker.mesh_use_embedded_materials = true;
     marker.color = color(0.0, 0.0, 0.0, 0.0);  // rviz then keeps the mesh's materials
   }
 
   const Scene& scene_;
-  std::vector<Look> added_, now_;
+  std::vector<Appearance> added_, now_;
 };
 
 struct Markers::Parts {
@@ -290,12 +280,12 @@ void Markers::update(const FrameResult& result, const SimulationState& state, co
   parts_->impacts.add(header.stamp, style_, layers.layer("impacts"));
   delete_gone(header, array);
   parts_->bodies.add(state, result.contacts, all, layers);
-  parts_->shadows.add(state, result, all, layers.layer("shadows", kForEver));
+  parts_->shadows.add(state, result, all, layers.layer("shadows", kNoExpiry));
   std::string text =
       held_by_hands(scene_, result, state) + "  |  " + caption_ + motion_of_operators(scene_, state);
   if (!all && text == text_) return;
   text_ = std::move(text);
-  layers.layer("text", kForEver)
+  layers.layer("text", kNoExpiry)
       .add(0, Marker::TEXT_VIEW_FACING, {text_place_}, Vector3::Constant(0.011), color(0.9, 0.9, 0.9))
       .text = text_;
 }
@@ -303,7 +293,7 @@ void Markers::update(const FrameResult& result, const SimulationState& state, co
 /// Twice a second, for a viewer that has joined later or has missed an array.
 bool Markers::all_due(const ros::Time& stamp) {
   const double since = seconds_between(all_sent_, stamp);
-  const bool due = all_ || cleared_ || since < 0.0 || since >= kPassing;
+  const bool due = all_ || cleared_ || since < 0.0 || since >= kTransientLifetime;
   if (due) all_sent_ = stamp;
   all_ = false;
   return due;

@@ -49,12 +49,11 @@ class NetworkThreadQueue : public ros::CallbackQueue {
     ros::PollManager::instance()->getPollSet().signal();
   }
 
-  /// Calls callbacks until the node ends, and in this thread those of the global queue. Rethrows their
-  /// exceptions. Afterwards no callback runs.
+  /// Calls callbacks until the node ends, and none after; rethrows exceptions. Spins the global queue.
   void spin() {
-    const struct Stop {
+    const struct StopOnExit {
       NetworkThreadQueue& queue;
-      ~Stop() { queue.stop(); }
+      ~StopOnExit() { queue.stop(); }
     } at_end{*this};
     spinning_ = true;
     ros::PollManager::instance()->getPollSet().signal();

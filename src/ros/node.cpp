@@ -23,26 +23,27 @@ namespace {
 
 constexpr std::chrono::seconds kPeriod(2);
 
-enum class Standing { known, unknown, no_master };
+enum class Registration { known, unknown, no_master };
 
-Standing standing() {
+Registration registration() {
   XmlRpc::XmlRpcValue request, response, payload;
   request[0] = request[1] = ros::this_node::getName();
-  if (ros::master::execute("lookupNode", request, response, payload, false)) return Standing::known;
-  return response.valid() ? Standing::unknown : Standing::no_master;
+  if (ros::master::execute("lookupNode", request, response, payload, false)) return Registration::known;
+  return response.valid() ? Registration::unknown : Registration::no_master;
 }
 
 /// Logs a change.
-void log_change(Standing before, Standing now) {
+void log_change(Registration before, Registration now) {
   const char* const uri = ros::master::getURI().c_str();
-  if (now == Standing::no_master)
+  if (now == Registration::no_master)
     ROS_WARN("no ROS master at %s: existing connections stay, new ones are impossible", uri);
-  if (now == Standing::unknown)
+  if (now == Registration::unknown)
     ROS_ERROR(
         "the ROS master at %s was restarted and does not know this node; existing connections stay, new ones "
         "are impossible: start this node again",
         uri);
-  if (now == Standing::known && before == Standing::no_master) ROS_INFO("the ROS master at %s is back", uri);
+  if (now == Registration::known && before == Registration::no_master)
+    ROS_INFO("the ROS master at %s is back", uri);
 }
 
 /// Logs when the ROS master is gone, and when a new one does not know this node. Existing connections
@@ -61,16 +62,13 @@ class MasterWatch {
     thread_.join();
   }
 
-  MasterWatch(const MasterWatch&) = delete;
-  MasterWatch& operator=(const MasterWatch&) = delete;
-
  private:
   void run() {
-    Standing before = Standing::known;
+    Registration before = Registration::known;
     std::unique_lock<std::mutex> lock(mutex_);
     while (!ended_.wait_for(lock, kPeriod, [this] { return end_; })) {
       lock.unlock();
-      const Standing now = standing();
+      const Registration now = registration();
       lock.lock();
       if (end_ || !ros::ok()) continue;
       if (now != before) log_change(before, now);
@@ -101,13 +99,6 @@ std::optional<int> status_of_arguments(int argc, char** argv, const char* usage)
 
 const std::string kTwists = "object_twist/";
 
-std::optional<Twist> twist_in(const std::string& name, const std::string& text) {
-  return read_yaml<ParameterError>("parameter '" + name + "'", [&]() -> std::optional<Twist> {
-    const auto v = yaml_numbers(load_yaml("parameter '" + name + "'", text), 6);
-    return v ? std::make_optional(Twist{Vector3(v->data()), Vector3(v->data() + 3)}) : std::nullopt;
-  });
-}
-
 /// Lets the node finish its work on these signals. Call after ros::init().
 void end_in_order() {
   struct sigaction action {};
@@ -119,10 +110,6 @@ void end_in_order() {
 
 int run_node(int argc, char** argv, const char* name, const char* usage, const NodeBody& body) {
   if (const auto status = status_of_arguments(argc, argv, usage)) return *status;
-  return run_node(argc, argv, name, body);
-}
-
-int run_node(int argc, char** argv, const char* name, const NodeBody& body) {
   ros::init(argc, argv, name);
   end_in_order();
   const ros::NodeHandle node, private_node("~");  // outlive what may throw: without a node nothing is logged
@@ -154,17 +141,6 @@ NodeParameters& NodeParameters::required(const std::string& name, const std::str
   entries_.back().allowed = allowed;
   entries_.back().required = &value;
   return *this;
-}
-
-NodeParameters& NodeParameters::texts(const std::string& name, std::size_t min, std::size_t max,
-                                      const std::string& what, std::vector<std::string>& values) {
-  const std::string allowed = "a list of " + std::to_string(min) + " to " + std::to_string(max) + " " + what;
-  return add(name, allowed, [min, max, &values](const std::string& list, const std::string& text) {
-    values.clear();
-    for (const YAML::Node& value : load_yaml("parameter '" + list + "'", text))
-      values.push_back(mrhi::yaml_text(value));
-    return values.size() >= min && values.size() <= max;
-  });
 }
 
 NodeParameters& NodeParameters::number(const std::string& name, double min, double max, double& value,
@@ -251,12 +227,15 @@ ServerParameters read_server_parameters(const ros::NodeHandle& private_node) {
   known.choice<HapticsRate>("haptics/rate", {{"frame", HapticsRate::frame}, {"step", HapticsRate::step}},
                             read.haptics_rate);
   known.truth("place_by_mouse", read.place_by_mouse).truth("standard_outputs", read.standard_outputs);
-  known.add(kTwists, "six numbers [vx, vy, vz, wx, wy, wz] in m/s and rad/s",
-            [&read](const std::string& name, const std::string& text) {
-              const std::optional<Twist> twist = twist_in(name, text);
-              if (twist) read.object_twists[name.substr(kTwists.size())] = *twist;
-              return twist.has_value();
-            });
+  known.add(
+      kTwists, "six numbers [vx, vy, vz, wx, wy, wz] in m/s and rad/s",
+      [&read](const std::string& name, const std::string& text) {
+        const std::string source = "parameter '" + name + "'";
+        const auto v =
+            read_yaml<ParameterError>(source, [&] { return yaml_numbers(load_yaml(source, text), 6); });
+        if (v) read.object_twists[name.substr(kTwists.size())] = {Vector3(v->data()), Vector3(v->data() + 3)};
+        return v.has_value();
+      });
   const auto leave = [](const std::string&, const std::string&) { return true; };
   // Parameters of dynamic_reconfigure, and of hand tracking in the same process.
   known.add("tune/", "", leave).add("hand_tracking/", "", leave);

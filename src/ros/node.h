@@ -15,23 +15,30 @@ namespace mrhi {
 /// Body of a node, with its public and private handles.
 using NodeBody = std::function<void(const ros::NodeHandle& node, const ros::NodeHandle& private_node)>;
 
-/// main() of a node. Prints the usage for --help, and rejects arguments that are not roslaunch's with one
-/// line and 2. Then runs `body`, which ends with the node; an exception's text is logged as fatal, and 1
-/// returned. SIGTERM, SIGHUP and SIGQUIT end ros::spin() like SIGINT. Logs when the ROS master is gone or has
-/// been restarted.
+/// main() of a node. Prints the usage for --help; one line, and returns 2, for arguments that are not
+/// roslaunch's. Runs `body`, which ends with the node; an exception is logged as fatal, and 1 returned.
+/// SIGTERM, SIGHUP and SIGQUIT end ros::spin() like SIGINT. Logs a lost or restarted ROS master.
 int run_node(int argc, char** argv, const char* name, const char* usage, const NodeBody& body);
 
-/// The same without checking arguments.
-int run_node(int argc, char** argv, const char* name, const NodeBody& body);
-
-/// main() of a node that is an object, made from its handles and its `Parameters` on the parameter server,
-/// which works while ROS spins.
+/// main() of a node that is an object, made from its handles and `Parameters`, while ROS spins.
 template <class Node, class Parameters>
 int run_node(int argc, char** argv, const char* name, const char* usage) {
   return run_node(argc, argv, name, usage, [](const auto& node, const auto& private_node) {
     const Node running(node, private_node, Parameters(private_node));
     ros::spin();
   });
+}
+
+/// Offers a service. `answer` takes the request and fills the response.
+template <class Service, class Answer>
+ros::ServiceServer serve(ros::NodeHandle& node, const char* name, const Answer& answer) {
+  using Request = typename Service::Request;
+  using Response = typename Service::Response;
+  const auto handler = [answer](Request& request, Response& response) {
+    answer(request, response);
+    return true;
+  };
+  return node.advertiseService<Request, Response>(name, boost::function<bool(Request&, Response&)>(handler));
 }
 
 /// The private parameters of a node: for each its name, its allowed values, and its destination.
@@ -45,9 +52,6 @@ class NodeParameters {
   NodeParameters& text(const std::string& name, std::string& value);
   /// A text that must not be empty.
   NodeParameters& required(const std::string& name, const std::string& allowed, std::string& value);
-  /// A list of `min` to `max` texts; `what` describes them.
-  NodeParameters& texts(const std::string& name, std::size_t min, std::size_t max, const std::string& what,
-                        std::vector<std::string>& values);
   /// A number from `min` to `max`; messages append `more` to the limits.
   NodeParameters& number(const std::string& name, double min, double max, double& value,
                          const std::string& more = "");

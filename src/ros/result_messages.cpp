@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "../math/rotation.h"
+#include "../record/record.h"
 #include "../scene/shape_kinds.h"
 #include "../simulation/contact_phase.h"
 #include "../text/text.h"
@@ -23,7 +25,7 @@ static_assert(msg::Contact::IMPULSE == int(ContactPhase::impulse) &&
 
 namespace {
 
-bool is_felt(const Contact& contact) {
+bool has_load(const Contact& contact) {
   return contact.touching() || !contact.impulse.isZero(0.0) || !contact.force.isZero(0.0);
 }
 
@@ -34,18 +36,18 @@ void add_phalanges(int slot, const Scene& scene, const std::vector<Contact>& con
     const auto first = contact;
     Vector3 force = Vector3::Zero(), impulse = Vector3::Zero(), normals = Vector3::Zero();
     double depth = 0.0, peak = 0.0;
-    bool felt = false, slips = false;
+    bool loaded = false, slips = false;
     for (; contact != contacts.end() && first->key.same_phalanx(contact->key); ++contact) {
-      if (first->key.hand != slot || !is_felt(*contact)) continue;
+      if (first->key.hand != slot || !has_load(*contact)) continue;
       force += contact->force;
       impulse += contact->impulse;
       normals += contact->normal;
       depth = std::max(depth, contact->depth);
       peak = std::max(peak, contact->peak_force);
       slips = slips || (contact->touching() && contact->friction != Friction::sticking);
-      felt = true;
+      loaded = true;
     }
-    if (!felt) continue;
+    if (!loaded) continue;
     const Vector3 normal = normals.normalized();
     msg::PhalanxHaptics& phalanx = phalanges.emplace_back();
     phalanx.finger = finger_of(first->key.capsule);
@@ -301,12 +303,12 @@ std::string held_objects(const Scene& scene, const SimulationState& state) {
 }
 
 double grip_force(const msg::ContactArray& message, const std::set<std::string>& bodies) {
-  double pressing = 0.0;
+  double normal_force = 0.0;
   for (const auto& contact : message.contacts) {
     if (bodies.count(contact.object) > 0)
-      pressing += std::max(0.0, -from_message(contact.normal).dot(from_message(contact.force)));
+      normal_force += std::max(0.0, -from_message(contact.normal).dot(from_message(contact.force)));
   }
-  return 0.5 * pressing;
+  return 0.5 * normal_force;
 }
 
 ObjectRequest from_message(const msg::SpawnObject::Request& message) {
@@ -333,6 +335,33 @@ ObjectRequest from_message(const msg::SpawnUrdf::Request& message) {
   request.joints = message.joints;
   request.pose = pose_or_identity(message.pose);
   return request;
+}
+
+LogEntry from_message(const msg::SimulationInput& message) {
+  const auto text_of = [](const std::vector<std::uint8_t>& bytes) {
+    return std::string(bytes.begin(), bytes.end());
+  };
+  LogEntry entry;
+  if (message.kind > message.CHANGE) throw std::invalid_argument("recorded input: kind is not known");
+  entry.kind = static_cast<LogEntry::Kind>(message.kind);
+  entry.run = message.run;
+  entry.sequence = message.sequence;
+  entry.stamp = from_ros_time(message.header.stamp);
+  entry.time = message.time;
+  entry.expected = message.expected;
+  entry.text = message.text;
+  for (const auto& file : message.files) entry.files.push_back({file.name, text_of(file.bytes)});
+  entry.state = text_of(message.state);
+  entry.state_hash = message.state_hash;
+  entry.lost = message.lost_by_queue;
+  if (entry.kind != LogEntry::Kind::frame) return entry;
+  try {
+    entry.hands = from_message(message.hands);
+    entry.hands->stamp = message.time;
+  } catch (const std::invalid_argument& error) {
+    entry.text = error.what();
+  }
+  return entry;
 }
 
 }  // namespace mrhi

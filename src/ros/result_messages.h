@@ -10,6 +10,7 @@
 #include <mr_hand_interaction/ObjectStateArray.h>
 #include <mr_hand_interaction/RenderedView.h>
 #include <mr_hand_interaction/SceneDescription.h>
+#include <mr_hand_interaction/SimulationInput.h>
 #include <mr_hand_interaction/SpawnObject.h>
 #include <mr_hand_interaction/SpawnUrdf.h>
 #include <sensor_msgs/JointState.h>
@@ -24,6 +25,7 @@
 #include "mr_hand_interaction/simulation.h"
 
 namespace mrhi {
+struct LogEntry;
 
 /// Input of messages: a scene, the results of a frame, and the state after it.
 struct Outcome {
@@ -48,8 +50,7 @@ std::vector<geometry_msgs::TransformStamped> object_transforms(const Scene& scen
                                                                const SimulationState& state,
                                                                const std_msgs::Header& header);
 
-/// Forces on every hand by `contacts` (sorted by key): an entry for each phalanx and object with a contact or
-/// an impact.
+/// Loads of each hand: an entry per phalanx and object in contact or impact. `contacts`: sorted by key.
 mr_hand_interaction::HapticsArray haptics_message(const Scene& scene, const SimulationState& state,
                                                   const std::vector<Contact>& contacts,
                                                   const std_msgs::Header& header);
@@ -61,8 +62,7 @@ mr_hand_interaction::SceneDescription scene_message(const Scene& scene, const Co
 /// wrist and knuckles. A missing joint is NaN.
 geometry_msgs::PoseArray pose_array_message(const Hand& hand, const std_msgs::Header& header);
 
-/// Sum of the hands' contact forces on a body, and their torque about its centre of mass, in world axes [N, N
-/// m]. Excludes impulses of impacts.
+/// Hands' contact forces on a body, without impacts, and torque about its centre of mass; world [N, N m].
 geometry_msgs::Wrench wrench_message(std::size_t body, const FrameResult& result,
                                      const SimulationState& state);
 
@@ -78,5 +78,9 @@ double grip_force(const mr_hand_interaction::ContactArray& message, const std::s
 
 ObjectRequest from_message(const mr_hand_interaction::SpawnObject::Request& message);
 ObjectRequest from_message(const mr_hand_interaction::SpawnUrdf::Request& message);
+
+/// A frame with unusable hands has none, and the fault as its text. Throws std::invalid_argument for an
+/// unknown kind.
+LogEntry from_message(const mr_hand_interaction::SimulationInput& message);
 
 }  // namespace mrhi

@@ -42,8 +42,7 @@ struct IsSimple<std_msgs::ColorRGBA> : TrueType {};
 }  // namespace ros
 
 namespace mrhi {
-/// Publishes `haptics`, and `haptics/joints` (the joints' own forces, as effort) if there are any: one
-/// message per frame or per step, while there are subscribers.
+/// Publishes `haptics`, and `haptics/joints` if there are joints: a message per frame or per step.
 class HapticsPublisher {
  public:
   HapticsPublisher(ros::NodeHandle& node, HapticsRate rate)
@@ -169,8 +168,7 @@ class StandardOutputs {
   std::optional<std::string> last_held_;
 };
 
-/// Publishes the results of a simulation, to topics with subscribers only. A new topic needs its .msg file
-/// and its add() in the constructor.
+/// Publishes the results of a simulation to subscribers. A new topic needs its .msg, and its add() below.
 class ResultPublisher {
  public:
   ResultPublisher(ros::NodeHandle node, const std::string& fixed_frame, HapticsRate haptics,
@@ -213,8 +211,7 @@ class ResultPublisher {
   /// After each step of a frame.
   void note_step() { haptics_.note_step(*simulation_, clock_.to_stamp(simulation_->time())); }
 
-  /// Publishes what robots and gloves wait for, under the result's stamp: haptics, contacts, objects. Does
-  /// not use its rendered hands.
+  /// Publishes what robots and gloves wait for. Does not use the rendered hands of the result.
   void publish_response(const FrameResult& result) {
     const std_msgs::Header when = header(result);
     publish_scene_description();
@@ -223,8 +220,7 @@ class ResultPublisher {
     if (standard_) standard_->publish(simulation_->scene(), &result, simulation_->state(), when);
   }
 
-  /// Publishes the rendered view: hands, then transforms, events and, at most kMarkerRate times a second,
-  /// markers.
+  /// Publishes the rendered hands, then transforms, events and, at most at kMarkerRate, markers.
   void publish_picture(const FrameResult& result) {
     const std_msgs::Header when = header(result);
     publish_outputs(Moment::picture, result, when);

@@ -13,24 +13,23 @@ using Point = Eigen::Vector2d;
 using visualization_msgs::Marker;
 
 constexpr int kMaxBodies = 8;
-constexpr int kFirstBody = kIdsPerHand;  // first id of bodies' shadows; lower ones are of hands
-constexpr double kMinMotion = 0.0005;    // [m]
-constexpr double kGrid = 0.1;            // height of rviz's grid [m]
-constexpr double kClearance = 0.05;      // of free bodies above the ground [m]
-constexpr double kCell = 0.008;          // [m]
-constexpr double kLift = 0.001;          // above the ground and its grid [m]
-constexpr double kWide = 0.1;            // smallest half width of a ground [m]
-constexpr double kDark = 0.5;            // opacity for an object on the ground
-constexpr double kFaintAt = 0.3;         // height at which half of that remains [m]
-constexpr double kSoft = 0.006;          // width of the soft edge for an object on the ground [m]
-constexpr double kSoftening = 0.05;      // increase per metre of height
-constexpr double kMinOpacity = 0.02;
-constexpr double kSunk = 0.02;    // greater depths below the ground have no shadow [m]
-constexpr double kHighest = 1.0;  // [m]
+constexpr int kFirstBody = kIdsPerHand;      // first id of bodies' shadows; lower ones are of hands
+constexpr double kMinMotion = 0.0005;        // [m]
+constexpr double kGridHeight = 0.1;          // height of rviz's grid [m]
+constexpr double kClearance = 0.05;          // of free bodies above the ground [m]
+constexpr double kCellSize = 0.008;          // [m]
+constexpr double kLiftAboveGround = 0.001;   // above the ground and its grid [m]
+constexpr double kMinGroundHalfWidth = 0.1;  // smallest half width of a ground [m]
+constexpr double kMaxShadowOpacity = 0.5;    // opacity for an object on the ground
+constexpr double kHalfOpacityHeight = 0.3;   // height at which half of that remains [m]
+constexpr double kMinEdgeWidth = 0.006;      // width of the soft edge for an object on the ground [m]
+constexpr double kEdgeGrowth = 0.05;         // increase per metre of height
+constexpr double kMinShadowOpacity = 0.02;
+constexpr double kMaxDepth = 0.02;  // greater depths below the ground have no shadow [m]
+constexpr double kMaxHeight = 1.0;  // [m]
 constexpr std::size_t kMeshPoints = 300;
 
-/// Outline of a convex object from above, as support distances in all directions; accurate to a quarter of a
-/// millimetre for 5 cm.
+/// Support distances of a convex object in horizontal directions; accurate to 0.25 mm for 5 cm.
 struct Outline {
   static constexpr std::size_t kDirections = 32;
 
@@ -115,13 +114,15 @@ void add_shadow(const std::vector<Outline>& outlines, double ground, Marker& mar
   double lowest = kInfinite;
   for (const Outline& outline : outlines) lowest = std::min(lowest, outline.lowest);
   const double height = lowest - ground;
-  if (outlines.empty() || height < -kSunk || height > kHighest) return;
-  const double soft = kSoft + kSoftening * std::max(0.0, height);
-  const double dark = kDark * kFaintAt / (kFaintAt + std::max(0.0, height));
+  if (outlines.empty() || height < -kMaxDepth || height > kMaxHeight) return;
+  const double soft = kMinEdgeWidth + kEdgeGrowth * std::max(0.0, height);
+  const double dark = kMaxShadowOpacity * kHalfOpacityHeight / (kHalfOpacityHeight + std::max(0.0, height));
   Eigen::AlignedBox2d extent;
   for (const Outline& outline : outlines) outline.extend(extent, soft);
-  const Eigen::Array2i size = 2 + (extent.sizes().array() / kCell).cast<int>();
-  const auto place = [&](int column, int row) -> Point { return extent.min() + kCell * Point(column, row); };
+  const Eigen::Array2i size = 2 + (extent.sizes().array() / kCellSize).cast<int>();
+  const auto place = [&](int column, int row) -> Point {
+    return extent.min() + kCellSize * Point(column, row);
+  };
   Eigen::ArrayXXd opacity(size.x(), size.y());
   for (int row = 0; row < size.y(); ++row) {
     for (int column = 0; column < size.x(); ++column) {
@@ -135,10 +136,10 @@ void add_shadow(const std::vector<Outline>& outlines, double ground, Marker& mar
   constexpr std::array<std::array<int, 2>, 6> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}}};
   for (int row = 0; row + 1 < size.y(); ++row) {
     for (int column = 0; column + 1 < size.x(); ++column) {
-      if (opacity.block<2, 2>(column, row).maxCoeff() < kMinOpacity) continue;
+      if (opacity.block<2, 2>(column, row).maxCoeff() < kMinShadowOpacity) continue;
       for (const auto& [right, up] : kCorners) {
         const Point at = place(column + right, row + up);
-        marker.points.push_back(to_message(Vector3(at.x(), at.y(), ground + kLift)));
+        marker.points.push_back(to_message(Vector3(at.x(), at.y(), ground + kLiftAboveGround)));
         marker.colors.push_back(color(0.0, 0.0, 0.0, opacity(column + right, row + up)));
       }
     }
@@ -148,7 +149,7 @@ void add_shadow(const std::vector<Outline>& outlines, double ground, Marker& mar
 }  // namespace
 
 double ground_height(const Scene& scene) {
-  double lowest = kGrid + kClearance, lowest_centre = std::numeric_limits<double>::infinity();
+  double lowest = kGridHeight + kClearance, lowest_centre = std::numeric_limits<double>::infinity();
   for (const Body& body : scene.bodies) {
     if (body.fixed || body.shapes.empty()) continue;
     lowest = std::min(lowest, body.start.position.z() - body.bounding_radius);
@@ -162,7 +163,7 @@ double ground_height(const Scene& scene) {
       const Box* const box = std::get_if<Box>(&placed.shape);
       if (!body.fixed || !box || !level) continue;
       const double top = pose.position.z() + box->half_extents.z();
-      const bool wide = std::min(box->half_extents.x(), box->half_extents.y()) >= kWide;
+      const bool wide = std::min(box->half_extents.x(), box->half_extents.y()) >= kMinGroundHalfWidth;
       if (wide && top <= lowest_centre) ground = std::max(ground, top);
     }
   }

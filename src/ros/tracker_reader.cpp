@@ -3,6 +3,7 @@
 #include <mr_hand_interaction/LeapControllerHand.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -37,10 +38,6 @@ void add_hand(const TrackedPoints& tracked, std::size_t first, std::size_t joint
   frame.hands.back().confidence = tracked.confidence;
 }
 
-bool ends_with(const std::string& name, const std::string& end) {
-  return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
-}
-
 /// A message type with which trackers report hands.
 struct Tracker {
   std::string type;
@@ -49,7 +46,7 @@ struct Tracker {
   std::function<std::variant<TrackedPoints, LeapFrame>(const std::string& md5,
                                                        std::vector<std::uint8_t>& bytes)>
       read;
-  bool tells_sides = false;  ///< false: hands by name are one hand, of the side that topic or frame names
+  bool has_sides = false;  ///< false: hands by name are one hand, of the side that topic or frame names
 };
 
 template <template <class> class Message>
@@ -153,16 +150,16 @@ bool has_both_hands(const TrackedPoints& tracked) {
 std::optional<Side> side_of_topic(const std::string& name) {
   std::string rest = "/" + name;
   for (int part = 0; part < 2; ++part) {
-    if (ends_with(rest, "/left")) return Side::left;
-    if (ends_with(rest, "/right")) return Side::right;
+    if (boost::ends_with(rest, "/left")) return Side::left;
+    if (boost::ends_with(rest, "/right")) return Side::right;
     rest.erase(rest.rfind('/') == std::string::npos ? 0 : rest.rfind('/'));
   }
   return std::nullopt;
 }
 
 std::optional<Side> side_of_frame(const std::string& name) {
-  if (ends_with(name, "left_hand")) return Side::left;
-  if (ends_with(name, "right_hand")) return Side::right;
+  if (boost::ends_with(name, "left_hand")) return Side::left;
+  if (boost::ends_with(name, "right_hand")) return Side::right;
   return std::nullopt;
 }
 
@@ -170,14 +167,12 @@ JointsFrame joints_from_points(const TrackedPoints& tracked, Side side, const Or
   JointsFrame frame;
   frame.stamp = from_ros_time(tracked.header.stamp);
   const std::size_t joints = tracked.points.size();
-  const auto usual = [](std::size_t size, const Vector3*) -> const JointOrder& { return *usual_order(size); };
-  const OrderOf order = order_of ? order_of : usual;
   if (joints == 0) return frame;
   if (usual_order(joints)) {
-    add_hand(tracked, 0, joints, side, order, frame);
+    add_hand(tracked, 0, joints, side, order_of, frame);
   } else if (has_both_hands(tracked)) {
-    add_hand(tracked, 0, joints / 2, Side::left, order, frame);
-    add_hand(tracked, joints / 2, joints / 2, Side::right, order, frame);
+    add_hand(tracked, 0, joints / 2, Side::left, order_of, frame);
+    add_hand(tracked, joints / 2, joints / 2, Side::right, order_of, frame);
   } else {
     throw DecodeError(
         DecodeError::Kind::wrong_count,
@@ -222,7 +217,7 @@ SourceFrame TrackerReader::read(Message message, const Place& place, std::option
       frame = frame_of(*points, side(), stream_of(message), result);
     } else {
       frame.joints = std::get<LeapFrame>(tracked).joints;
-      if (!tracker.tells_sides) {
+      if (!tracker.has_sides) {
         frame.side = side();
         for (HandJoints& hand : frame.joints.hands) hand.side = *frame.side;
       }

@@ -98,8 +98,7 @@ class TransformMemory {
   tf2::BufferCore buffer_;
 };
 
-/// Contents of a tracker's message: joints of one hand or both, in one of joint_orders(), in the header's
-/// frame.
+/// Joints of one hand or both, in one of joint_orders(), in the frame of the header.
 struct TrackedPoints {
   std_msgs::Header header;
   std::vector<Vector3> points;
@@ -125,8 +124,7 @@ TrackedPoints tracked_points(const geometry_msgs::PoseArray_<Allocator>& message
     tracked.points.emplace_back(pose.position.x, pose.position.y, pose.position.z);
   return tracked;
 }
-/// Channel "radius": distance from each joint to the skin [m]. Channel "confidence": 0 to 1 for each joint;
-/// their mean is the hand's.
+/// Channels: "radius" [m], from a joint to the skin; "confidence", 0 to 1, whose mean is the hand's.
 template <class Allocator>
 TrackedPoints tracked_points(const sensor_msgs::PointCloud_<Allocator>& message) {
   TrackedPoints tracked{header_of(message.header), {}, {}};
@@ -149,9 +147,8 @@ using OrderOf = std::function<const JointOrder&(std::size_t size, const Vector3*
 /// Makes hands from joint positions; a joint with a NaN coordinate is missing. Twice an order's number of
 /// joints means a left hand, then a right one; otherwise the hand is of the given side. A hand without any
 /// joint is absent; no points make a frame without hands. Such trackers have no ids, so these are 1 for left,
-/// 2 for right. Without `order_of` uses the usual order of that size. Throws DecodeError for any other number
-/// of joints.
-JointsFrame joints_from_points(const TrackedPoints& tracked, Side side, const OrderOf& order_of = {});
+/// 2 for right. Throws DecodeError for any other number of joints.
+JointsFrame joints_from_points(const TrackedPoints& tracked, Side side, const OrderOf& order_of);
 
 /// True if it has both hands.
 bool has_both_hands(const TrackedPoints& tracked);
@@ -182,17 +179,6 @@ class TrackerReader {
     std::vector<std::uint8_t> bytes;
     Nanoseconds receipt = 0;
   };
-  /// From a rosbag::MessageInstance.
-  template <class Serialised>
-  static Message message_of(const std::string& topic, const std::string& publisher, const Serialised& message,
-                            const ros::Time& receipt) {
-    return {topic,
-            publisher,
-            message.getDataType(),
-            message.getMD5Sum(),
-            serialised_bytes(message),
-            static_cast<Nanoseconds>(receipt.toNSec())};
-  }
   /// Pose of a tracker in world, by its frame.
   using Place = std::function<Pose(const std::string& frame_id, Nanoseconds stamp)>;
 

@@ -13,16 +13,20 @@ namespace {
 using visualization_msgs::Marker;
 using Status = mr_hand_interaction::TrainingStatus;
 
-constexpr double kText = 0.0125, kSmallText = 0.0110;  // height of letters [m]
-constexpr double kTimer = 0.02;                        // of the timer's letters
-constexpr double kMark = 0.014;                        // of a place's number [m]
-constexpr double kMarkRoom = 1.35;                     // from a target to its number, over its ring's radius
-constexpr double kLine = 1.4;                          // line spacing, over the letters' height
+constexpr double kTextHeight = 0.0125, kSmallTextHeight = 0.0110;  // height of letters [m]
+constexpr double kTimerHeight = 0.02;                              // of the timer's letters [m]
+constexpr double kNumberHeight = 0.014;                            // of a place's number [m]
+constexpr double kNumberDistance = 1.35;  // from a target to its number, over its ring's radius
+constexpr double kLineSpacing = 1.4;      // line spacing, over the letters' height
+constexpr double kRingScale = 1.15;       // radius of the ring, over the body's bounding radius
+constexpr double kRingWidth = 0.12;       // over its radius
+constexpr double kShellScale = 1.12;      // size of a highlight, over the body's
+constexpr double kArrowLength = 0.035;    // of the arrow that points at the object [m]
+constexpr double kArrowGap = 0.012;       // between arrow and object [m]
 constexpr int kIdsPerPlace = 100;
 constexpr std::size_t kMaxLetters = 44;  // letters per line
 
-/// 0.3 m in front of the camera of rviz/training.rviz, at the upper edge of its view: the hands' workspace is
-/// behind it.
+/// 0.3 m in front of the camera of rviz/training.rviz, before the workspace of the hands.
 const Vector3 kHeadingPlace(0.0, -0.193, 0.545), kTimerPlace(0.10, -0.212, 0.488);
 const Vector3 kDown(0.0, -0.2955, -0.9553);  // in that view
 
@@ -32,7 +36,7 @@ std_msgs::ColorRGBA target_color(bool reached, double alpha) {
 }
 
 void write(const MarkerLayer& layer, int id, const Vector3& place, const std::string& text,
-           double height = kText) {
+           double height = kTextHeight) {
   if (text.empty()) return;
   layer.add(id, Marker::TEXT_VIEW_FACING, {place}, Vector3::Constant(height), color(0.95, 0.95, 0.95)).text =
       text;
@@ -57,9 +61,10 @@ void write_instruction(const MarkerLayer& layer, const MarkerLayer& below, const
                        const std::string& text, const std::string& result) {
   Vector3 place = kHeadingPlace;
   int id = 0;
-  write(layer, id++, place, heading, kSmallText);
-  for (const std::string& line : lines_of(text)) write(layer, id++, place += kLine * kText * kDown, line);
-  write(below, 0, place += kLine * kText * kDown, result, kSmallText);
+  write(layer, id++, place, heading, kSmallTextHeight);
+  for (const std::string& line : lines_of(text))
+    write(layer, id++, place += kLineSpacing * kTextHeight * kDown, line);
+  write(below, 0, place += kLineSpacing * kTextHeight * kDown, result, kSmallTextHeight);
 }
 
 Pose pose_at(const Goal& goal, const Session& session) {
@@ -79,8 +84,8 @@ void add_places(const Session& session, const Body& body, const MarkerLayer& pla
     route.push_back(goal.position);
     const int id = static_cast<int>(i) * kIdsPerPlace;
     const bool done = begun && session.trial().goal() > i, waits = !begun || session.trial().goal() < i;
-    const Vector3 in_front = goal.position - kMarkRoom * ring_radius(body) * Vector3::UnitY();
-    write(places, id, in_front, done ? "done" : std::to_string(number), kMark);
+    const Vector3 in_front = goal.position - kNumberDistance * ring_radius(body) * Vector3::UnitY();
+    write(places, id, in_front, done ? "done" : std::to_string(number), kNumberHeight);
     if (waits) add_target({body, pose_at(goal, session), 0.0, false, true}, id + 1, places);
   }
   if (route.size() < 2) return;
@@ -110,6 +115,16 @@ std::string result_text(const Session& session, const Status& status) {
                                 : line;
 }
 
+/// Returns the next free id.
+int add_form(const Body& body, const Pose& pose, const std_msgs::ColorRGBA& paint, double size, int id,
+             const MarkerLayer& layer) {
+  for (const Visual& drawn : drawn_shapes(body)) {
+    Marker& marker = add_shape(drawn.shape, pose * drawn.pose, paint, id++, layer);
+    for (double* const scale : {&marker.scale.x, &marker.scale.y, &marker.scale.z}) *scale *= size;
+  }
+  return id;
+}
+
 }  // namespace
 
 std::string instruction_now(const Session& session, bool paused, bool begins_by_itself) {
@@ -124,10 +139,8 @@ visualization_msgs::MarkerArray training_markers(
     const Session& session, const Body& body, const Status& status,
     const std::optional<mr_hand_interaction::ObjectState>& seen) {
   visualization_msgs::MarkerArray array;
-  const auto layer = [&](const char* name) { return MarkerLayer(array, status.header, name, kPassing); };
-  MarkerLayer target = layer("target"), places = layer("places"), path = layer("path"),
-              object = layer("object");
-  MarkerLayer instructions = layer("instructions"), timer = layer("timer"), result = layer("result");
+  const MarkerLayers layers{array, status.header};
+  const MarkerLayer target = layers.layer("target");
   const bool active = status.phase == Status::RUNNING || status.phase == Status::PAUSED;
   const Goal& goal = session.task().goals[session.trial().goal()];
   const bool comes_to_rest =
@@ -141,34 +154,16 @@ visualization_msgs::MarkerArray training_markers(
     } else {
       add_target({body, pose_at(goal, session), status.progress, status.inside != 0}, 0, target);
     }
-    write(timer, 0, kTimerPlace, timer_text(goal, status), kTimer);
+    write(layers.layer("timer"), 0, kTimerPlace, timer_text(goal, status), kTimerHeight);
   }
-  if (status.phase != Status::FINISHED) add_places(session, body, places, path);
+  if (status.phase != Status::FINISHED)
+    add_places(session, body, layers.layer("places"), layers.layer("path"));
   if (status.phase == Status::RUNNING && seen && !seen->held && goal.stage != TrainingStage::release)
-    add_highlight(body, from_message(seen->pose), 0, object);
-  write_instruction(instructions, result, heading(status), status.instruction, result_text(session, status));
+    add_highlight(body, from_message(seen->pose), 0, layers.layer("object"));
+  write_instruction(layers.layer("instructions"), layers.layer("result"), heading(status), status.instruction,
+                    result_text(session, status));
   return array;
 }
-
-namespace {
-
-constexpr double kRingRoom = 1.15;   // radius of the ring, over the body's bounding radius
-constexpr double kRingWidth = 0.12;  // over its radius
-constexpr double kShell = 1.12;      // size of a highlight, over the body's
-constexpr double kShaft = 0.035;     // of the arrow that points at the object [m]
-constexpr double kGap = 0.012;       // between arrow and object [m]
-
-/// Returns the next free id.
-int add_form(const Body& body, const Pose& pose, const std_msgs::ColorRGBA& paint, double size, int id,
-             const MarkerLayer& layer) {
-  for (const Visual& drawn : drawn_shapes(body)) {
-    Marker& marker = add_shape(drawn.shape, pose * drawn.pose, paint, id++, layer);
-    for (double* const scale : {&marker.scale.x, &marker.scale.y, &marker.scale.z}) *scale *= size;
-  }
-  return id;
-}
-
-}  // namespace
 
 void add_target(const TargetMark& target, int first_id, const MarkerLayer& layer) {
   const double form = target.waits ? 0.12 : 0.35, filled = target.waits ? 0.25 : 1.0;
@@ -183,13 +178,13 @@ void add_target(const TargetMark& target, int first_id, const MarkerLayer& layer
 }
 
 double ring_radius(const Body& body) {
-  return kRingRoom * body.bounding_radius;
+  return kRingScale * body.bounding_radius;
 }
 
 void add_highlight(const Body& body, const Pose& pose, int first_id, const MarkerLayer& layer) {
-  const int id = add_form(body, pose, color(0.941, 0.894, 0.259, 0.45), kShell, first_id, layer);
-  const Vector3 tip = pose.position + (body.bounding_radius + kGap) * Vector3::UnitZ();
-  add_arrow({tip + kShaft * Vector3::UnitZ(), tip, 0.003, 0.008, 0.018}, color(0.941, 0.894, 0.259), id,
+  const int id = add_form(body, pose, color(0.941, 0.894, 0.259, 0.45), kShellScale, first_id, layer);
+  const Vector3 tip = pose.position + (body.bounding_radius + kArrowGap) * Vector3::UnitZ();
+  add_arrow({tip + kArrowLength * Vector3::UnitZ(), tip, 0.003, 0.008, 0.018}, color(0.941, 0.894, 0.259), id,
             layer);
 }
 

@@ -2,7 +2,6 @@
 
 #include <mr_hand_interaction/DeleteObject.h>
 #include <mr_hand_interaction/SetParameter.h>
-#include <mr_hand_interaction/SimulationInput.h>
 #include <mr_hand_interaction/SpawnObject.h>
 #include <mr_hand_interaction/SpawnUrdf.h>
 #include <ros/ros.h>
@@ -30,6 +29,7 @@
 #include "mr_hand_interaction/scene/body.h"
 #include "mr_hand_interaction/training/session.h"
 #include "node.h"
+#include "result_messages.h"
 
 namespace mrhi {
 /// Parameters of the training node on the parameter server.
@@ -53,14 +53,13 @@ struct TrainingParameters {
   }
 
   /// Configuration of the interaction node, from the parameter server, with a task's gravity.
-  Configuration told_configuration(const ros::NodeHandle& node, const Vector3& gravity) const {
+  Configuration expected_configuration(const ros::NodeHandle& node, const Vector3& gravity) const {
     Configuration configuration = configuration_of(node);
     configuration.gravity = gravity;
     return configuration;
   }
 
-  /// Throws SceneError for a task that cannot be loaded, std::invalid_argument for one that a simulated
-  /// operator cannot perform, SessionError for an unusable folder.
+  /// Throws SceneError, SessionError, or std::invalid_argument for a task that operators cannot perform.
   Session open_session(const ros::NodeHandle& node, Nanoseconds now,
                        const std::function<void(const EventRow&)>& on_event) const {
     const std::string file = find_task_file(task, task_folders());
@@ -199,8 +198,7 @@ class TrainingScene {
   bool set_up_ = false, has_operator_ = false, needs_operator_ = false;
 };
 
-/// Observes the parameters of a running interaction_node by its `simulation_input`, whatever changes them:
-/// services, sliders or a restart.
+/// Finds changes of the parameters of a running interaction_node in its `simulation_input`.
 class ParameterWatch {
  public:
   struct Difference {
@@ -208,18 +206,28 @@ class ParameterWatch {
     bool as_begun;            ///< true if it is as expected again
   };
 
-  /// `configuration`: expected values. Ignores the gravity of a BEGIN, which a session sets after it has
-  /// begun to listen.
+  /// `configuration`: expected values. Ignores the gravity of a BEGIN, which the session sets later.
   explicit ParameterWatch(const Configuration& configuration)
       : begun_(parameter_texts(configuration)), now_(configuration) {}
 
   /// Returns the differences that this message causes.
   std::vector<Difference> take(const mr_hand_interaction::SimulationInput& message) {
-    const bool may_set =
-        message.kind == SimulationInput::BEGIN ||
-        (message.kind == SimulationInput::CHANGE && message.text.find("set") != std::string::npos);
+    const bool may_set = message.kind == message.BEGIN ||
+                         (message.kind == message.CHANGE && message.text.find("set") != std::string::npos);
     if (!may_set) return {};
-    const Configuration later = after(message, now_);
+    const LogEntry entry = from_message(message);
+    Configuration later = now_;
+    if (entry.kind == LogEntry::Kind::begin) {
+      std::vector<std::string> unknown;
+      later = configuration_of(world_from_yaml(entry.text, entry.files), unknown);
+      later.gravity = now_.gravity;
+    } else {
+      const Change change = change_from_yaml(entry.text, entry.files);
+      const auto* const set = std::get_if<SetParameters>(&change);
+      if (set == nullptr) return {};
+      for (const auto& [name, value] : set->values)
+        if (!grasp_parameter(name)) set_parameter(later, name, value);
+    }
     std::vector<Difference> differences;
     const auto before = parameter_texts(now_);
     for (const auto& [name, value] : parameter_texts(later)) {
@@ -230,32 +238,6 @@ class ParameterWatch {
   }
 
  private:
-  using SimulationInput = mr_hand_interaction::SimulationInput;
-
-  static RecordedFiles files_of(const SimulationInput& message) {
-    RecordedFiles files;
-    for (const auto& file : message.files)
-      files.push_back({file.name, {file.bytes.begin(), file.bytes.end()}});
-    return files;
-  }
-
-  /// The parameters after the message.
-  static Configuration after(const SimulationInput& message, Configuration configuration) {
-    if (message.kind == SimulationInput::BEGIN) {
-      const auto gravity = configuration.gravity;
-      std::vector<std::string> unknown;
-      configuration = configuration_of(world_from_yaml(message.text, files_of(message)), unknown);
-      configuration.gravity = gravity;
-      return configuration;
-    }
-    const Change change = change_from_yaml(message.text, files_of(message));
-    if (const auto* set = std::get_if<SetParameters>(&change)) {
-      for (const auto& [name, value] : set->values)
-        if (!grasp_parameter(name)) set_parameter(configuration, name, value);
-    }
-    return configuration;
-  }
-
   const std::map<std::string, std::string> begun_;
   Configuration now_;
 };

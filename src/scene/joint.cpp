@@ -59,7 +59,7 @@ void check_forces(const Joint& joint) {
   if (!joint.latch) return;
   check(joint, "latch at", joint.latch->at, kCoordinate);
   check(joint, "latch's force", joint.latch->force, kForce);
-  check(joint, "latch's reach", joint.latch->reach, kReach);
+  check(joint, "latch's reach", joint.latch->reach, kLatchReach);
 }
 
 void check_axis(const Joint& joint) {
@@ -111,9 +111,9 @@ void check_mechanism_sizes(const Scene& scene) {
 }  // namespace
 
 const Joint* joint_of(const Scene& scene, int body) {
-  const auto found = std::find_if(scene.joints.begin(), scene.joints.end(),
-                                  [body](const Joint& joint) { return joint.child == body; });
-  return found == scene.joints.end() ? nullptr : &*found;
+  for (const Joint& joint : scene.joints)
+    if (joint.child == body) return &joint;
+  return nullptr;
 }
 
 // S = (a, 0) of a sliding joint, (0, a) of a turning one.

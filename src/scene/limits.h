@@ -20,6 +20,7 @@ constexpr Range kSpeed{0, 100};        ///< [m/s]
 constexpr Range kSpin{0, 1000};        ///< [rad/s]
 constexpr Range kColor{0, 1};          ///< red, green, blue and opacity, each
 constexpr Range kGravity{-100, 100};   ///< on each axis [m/s^2]
+constexpr int kMaxOperators = 4;       ///< of a scene: one for each hand
 
 }  // namespace mrhi::body_limits
 
@@ -36,7 +37,7 @@ constexpr Range kForce{0.0, 1e5};
 constexpr Range kStiffness{0.0, 1e6};
 constexpr Range kRestitution{0.0, 1.0};
 constexpr Range kAxis{1e-6, 1000.0};  ///< length of an axis in a URDF
-constexpr Range kReach{1e-5, 10.0};
+constexpr Range kLatchReach{1e-5, 10.0};
 
 }  // namespace mrhi::joint_ranges
 

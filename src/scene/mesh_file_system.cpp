@@ -15,6 +15,10 @@ fs::path plain(const fs::path& file) {
   return fs::absolute(file, ignored).lexically_normal();
 }
 
+bool is_buffer(const fs::path& file) {
+  return text::in_lower_case(file.extension().string()) == ".bin";
+}
+
 bool is_below(const fs::path& folder, const fs::path& file) {
   return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
 }
@@ -28,7 +32,8 @@ std::string why_too_large(const fs::path& file) {
   return "has " + std::to_string(size) + " bytes; allowed: at most " + std::to_string(kMaxMeshBytes);
 }
 
-MeshFileSystem::MeshFileSystem(const std::string& mesh_file) : mesh_(plain(mesh_file)) {
+MeshFileSystem::MeshFileSystem(const std::string& mesh_file)
+    : mesh_(plain(mesh_file)), has_buffers_(text::in_lower_case(mesh_.extension().string()) == ".gltf") {
   std::error_code ignored;
   folders_ = {fs::weakly_canonical(mesh_.parent_path(), ignored),
               fs::weakly_canonical(mesh_, ignored).parent_path()};
@@ -36,6 +41,7 @@ MeshFileSystem::MeshFileSystem(const std::string& mesh_file) : mesh_(plain(mesh_
 
 bool MeshFileSystem::Exists(const char* file) const {
   const fs::path path = plain(file);
+  if (path != mesh_ && !has_buffers_) return false;
   if (!is_file(path)) missing_ = path.filename().string();
   return is_file(path) && why_refused(path).empty();
 }
@@ -44,6 +50,7 @@ Assimp::IOStream* MeshFileSystem::Open(const char* file, const char* mode) {
   const fs::path path = plain(file);
   std::error_code ignored;
   if (*mode != 'r') return nullptr;
+  if (path != mesh_ && !has_buffers_) return nullptr;
   if (!fs::exists(path, ignored)) {
     missing_ = path.filename().string();
     return nullptr;
@@ -63,6 +70,8 @@ std::string MeshFileSystem::why_refused(const fs::path& file) const {
                                      [&](const fs::path& folder) { return is_below(folder, target); });
   if (file != mesh_ && (error || !is_inside))
     return "is not in the mesh's folder; allowed: files in or below that folder";
+  if (file != mesh_ && !(is_buffer(file) && is_buffer(target)))
+    return "is no buffer; allowed: files that end in .bin";
   const std::string why = why_unreadable(file.string());
   if (!why.empty()) return why + "; allowed: a file that may be read";
   return why_too_large(file);

@@ -13,8 +13,9 @@ constexpr std::uintmax_t kMaxMeshBytes = 64u << 20;  ///< of a mesh file, and of
 /// Reason why a file is too large; empty: it is not, or it is not there.
 std::string why_too_large(const std::filesystem::path& file);
 
-/// File system of assimp for one mesh, which may name other files: a glTF's buffers, an OBJ's materials.
-/// Opens only regular files in or below the mesh's own folder, as other files are not the mesh's to publish.
+/// File system of assimp for one mesh, which may name other files: opens a glTF's buffers alone (.bin), and
+/// only in or below the mesh's own folder. What is read is published and recorded, and a mesh may come from a
+/// stranger.
 class MeshFileSystem : public Assimp::DefaultIOSystem {
  public:
   explicit MeshFileSystem(const std::string& mesh_file);
@@ -34,6 +35,7 @@ class MeshFileSystem : public Assimp::DefaultIOSystem {
   std::string why_refused(const std::filesystem::path& file) const;
 
   std::filesystem::path mesh_;
+  bool has_buffers_;  ///< of a glTF; what other formats name, materials and images, is not used
   std::set<std::filesystem::path> folders_;  ///< of the mesh and of the target of a symlink to it
   std::set<std::string> opened_;
   std::string refusal_;

@@ -188,9 +188,9 @@ bool read_face(const std::vector<std::string>& words, const std::vector<aiVector
 /// Reads a small OBJ of one group of such faces, the form of convex pieces. Returns false for any other OBJ.
 /// Assimp clears 16 MB for each OBJ, which would take most of the time of loading 200 pieces.
 bool read_piece(const std::string& file, Collector& collector) {
-  constexpr std::size_t kLargest = 1u << 20;
-  const std::string text = file_text(file, kLargest + 1).value_or("");
-  if (text.size() > kLargest || text.find('\0') != std::string::npos) return false;
+  constexpr std::size_t kMaxPieceBytes = 1u << 20;
+  const std::string text = file_text(file, kMaxPieceBytes + 1).value_or("");
+  if (text.size() > kMaxPieceBytes || text.find('\0') != std::string::npos) return false;
   std::vector<aiVector3D> vertices;
   std::vector<std::array<aiVector3D, 3>> triangles;
   std::istringstream lines(text);

@@ -231,16 +231,16 @@ class Normaliser {
   }
 
   /// Each visual has a material of its own, so that none is defined twice.
-  void write_material(const XMLElement& given, const std::string& where) {
-    const std::string name = attribute(&given, "name");
+  void write_material(const XMLElement& element, const std::string& where) {
+    const std::string name = attribute(&element, "name");
     const auto named = materials_.find(name);
-    if (!is_defined(given) && named == materials_.end()) {
+    if (!is_defined(element) && named == materials_.end()) {
       if (!name.empty())
         warnings_.add("materials without a color in this file are drawn grey",
                       text::quoted(name) + " of " + where);
       return;
     }
-    const XMLElement& material = is_defined(given) ? given : *named->second;
+    const XMLElement& material = is_defined(element) ? element : *named->second;
     open("material", {{"name", "material_" + std::to_string(++materials_written_)}});
     if (const XMLElement* color = material.FirstChildElement("color"))
       write("color", {{"rgba", rgba(attribute(color, "rgba"), where)}});
@@ -250,14 +250,14 @@ class Normaliser {
 
   /// Divides whole numbers of 0 to 255 by 255, and cuts off what rounding has above 1. A text that is no
   /// numbers, like #ff0000, is grey. Other numbers stay as they are, and are refused later.
-  std::string rgba(const std::string& given, const std::string& where) {
+  std::string rgba(const std::string& color, const std::string& where) {
     constexpr double kRounding = 1e-3;
-    const std::vector<std::string> words = words_of(given);
+    const std::vector<std::string> words = words_of(color);
     std::vector<double> parts;
     for (const std::string& word : words) {
       const std::optional<double> number = text::to_number(word);
       if (!number) {
-        warnings_.add("colors that are no numbers are drawn grey", text::quoted(given) + " of " + where);
+        warnings_.add("colors that are no numbers are drawn grey", text::quoted(color) + " of " + where);
         return "0.7 0.7 0.7 1";
       }
       parts.push_back(*number);
@@ -268,7 +268,7 @@ class Normaliser {
     const bool bytes = !ratios && std::all_of(parts.begin(), parts.end() - has_opacity, is_byte) &&
                        (!has_opacity || is_byte(parts[3]) || is_ratio(parts[3]));
     if (!ratios && !bytes) return text::joined(words, " ");
-    if (bytes) warnings_.add("colors of 0 to 255 are divided by 255", text::quoted(given) + " of " + where);
+    if (bytes) warnings_.add("colors of 0 to 255 are divided by 255", text::quoted(color) + " of " + where);
     std::vector<std::string> scaled;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const double full = bytes && (i < 3 || parts[i] > 1.0) ? 255.0 : 1.0;
@@ -300,14 +300,14 @@ class Normaliser {
   /// Limits within kCoordinate, and the joint's type that fits them. Effort and velocity are 0: urdfdom
   /// requires them, and nothing uses them.
   Attributes read_limit(const XMLElement& joint, const std::string& what, std::string& type) {
-    const XMLElement* given = joint.FirstChildElement("limit");
-    std::string lower = attribute(given, "lower", "0"), upper = attribute(given, "upper", "0");
+    const XMLElement* limit = joint.FirstChildElement("limit");
+    std::string lower = attribute(limit, "lower", "0"), upper = attribute(limit, "upper", "0");
     const auto number = [](const std::string& text) {  // nan if it is no number, which urdfdom refuses
       const double value = mrhi::text::to_number(text).value_or(NAN);
       return std::min(std::max(value, joint_ranges::kCoordinate.min), joint_ranges::kCoordinate.max);
     };
     double low = number(lower), high = number(upper);
-    const bool none = attribute(given, "lower").empty() && attribute(given, "upper").empty();
+    const bool none = attribute(limit, "lower").empty() && attribute(limit, "upper").empty();
     if (none || low > high) {
       warnings_.add("joints move without limits",
                     what + (none ? ", which has none" : ", lower " + lower + " above upper " + upper));
@@ -374,8 +374,8 @@ class Normaliser {
 
 }  // namespace
 
-NormalUrdf normal_urdf(const std::string& given, Warnings& warnings) {
-  std::string xml = given;  // without its declaration, which people also write below a comment
+NormalUrdf normal_urdf(const std::string& original, Warnings& warnings) {
+  std::string xml = original;  // without its declaration, which people also write below a comment
   if (const std::size_t at = xml.find("<?xml"), end = xml.find("?>"); at < end && end != std::string::npos)
     xml.erase(at, end + 2 - at);
   tinyxml2::XMLDocument document;

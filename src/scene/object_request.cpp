@@ -121,8 +121,8 @@ Body requested_body(const ObjectRequest& request, const SceneOptions& options) {
   return scene_of_body(with_file_read(request, options), options).bodies.front();
 }
 
-Scene requested_scene(const ObjectRequest& given, const SceneOptions& options) {
-  const ObjectRequest request = with_file_read(given, options);
+Scene requested_scene(const ObjectRequest& original, const SceneOptions& options) {
+  const ObjectRequest request = with_file_read(original, options);
   Scene scene;
   if (!request.whole) return scene_of_body(request, options);
   check_motion(request);

@@ -38,7 +38,6 @@ std::string origin(const Pose& pose) {
          "\"/>";
 }
 
-/// The text of an XML attribute, with escaped characters.
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text)
@@ -305,21 +304,6 @@ void check_path(const fs::path& file, const std::string& shown) {
 }
 
 }  // namespace
-
-Scene scene_as_it_is(const Scene& scene, const std::vector<BodyState>& bodies,
-                     const std::vector<JointState>& joints) {
-  Scene now = scene;
-  for (std::size_t b = 0; b < now.bodies.size(); ++b) {
-    if (now.bodies[b].fixed) continue;
-    now.bodies[b].start = bodies[b].pose;
-    now.bodies[b].start_twist = twist_of(scene.bodies[b], bodies[b]);
-  }
-  for (std::size_t j = 0; j < now.joints.size(); ++j) {
-    Joint& joint = now.joints[j];
-    joint.start = std::min(std::max(joints[j].position, joint.lower), joint.upper);
-  }
-  return now;
-}
 
 void save_scene(const Scene& scene, const std::string& urdf_file) {
   const fs::path file = urdf_file;

@@ -69,7 +69,7 @@ void check_inertia(const Body& body) {
                               text::number(kMinMomentRatio) + " of the largest");
 }
 
-/// Axis of the intermediate moment. It is the second axis in free_rotation() (integration/free_flight.cpp):
+/// Axis of the intermediate moment. It is the second axis of MomentumPath (integration/free_flight.cpp):
 /// then A and B of the addition theorem are not negative, and its functions are real.
 int intermediate(const Vector3& moments) {
   for (int i = 0; i < 2; ++i) {

@@ -131,13 +131,13 @@ class BodyReader {
 
   /// Sets both frictions to the one coefficient, as the simulators do that have one.
   void read_friction(const std::string& link, Body& body) const {
-    const auto given = document_.friction.find(link);
-    if (given == document_.friction.end()) return;
+    const auto found = document_.friction.find(link);
+    if (found == document_.friction.end()) return;
     const Range& range = material_fields()[1].range;
-    const double friction = std::min(std::max(given->second, range.min), range.max);
-    if (friction != given->second)
+    const double friction = std::clamp(found->second, range.min, range.max);
+    if (friction != found->second)
       document_.warnings.add("friction is held to " + range.describe(),
-                             "'" + link + "' " + text::number(given->second));
+                             "'" + link + "' " + text::number(found->second));
     body.material.static_friction = body.material.dynamic_friction = friction;
     body.own_material.static_friction = body.own_material.dynamic_friction = true;
   }
@@ -158,14 +158,14 @@ class BodyReader {
   /// Replaces an inertia that lacks a moment by the shapes': some of PyBullet's files have such inertias,
   /// which PyBullet ignores.
   Weight weight_of(const LinkPart& part, const std::vector<PlacedShape>& shapes) const {
-    const urdf::Inertial& given = *part.link->inertial;
-    const Pose origin = part.pose * to_pose(given.origin);
+    const urdf::Inertial& inertial = *part.link->inertial;
+    const Pose origin = part.pose * to_pose(inertial.origin);
     const Matrix3 to_link = origin.orientation.toRotationMatrix();
     Matrix3 inertia;
-    inertia << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz, given.iyz,
-        given.izz;
+    inertia << inertial.ixx, inertial.ixy, inertial.ixz, inertial.ixy, inertial.iyy, inertial.iyz,
+        inertial.ixz, inertial.iyz, inertial.izz;
     inertia = to_link * inertia * to_link.transpose();
-    Weight weight{given.mass, origin.position, 0.5 * (inertia + inertia.transpose())};
+    Weight weight{inertial.mass, origin.position, 0.5 * (inertia + inertia.transpose())};
     const bool none = weight.inertia.isZero(0.0);
     const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(weight.inertia).eigenvalues();
     const bool part_only = !none && std::abs(moments[0]) <= kMissingMoment * moments[2];
@@ -173,9 +173,9 @@ class BodyReader {
       document_.warnings.add("inertias that lack a moment are replaced by those of the shapes",
                              "'" + part.link->name + "' " + text::vector(moments) + " kg m^2");
     if (none || part_only)
-      weight.inertia =
-          shapes.empty() ? inertia_of({{kShapelessLink, Pose{}}}, given.mass)
-                         : inertia_of(moved(shapes, {-origin.position, Quaternion::Identity()}), given.mass);
+      weight.inertia = shapes.empty() ? inertia_of({{kShapelessLink, Pose{}}}, inertial.mass)
+                                      : inertia_of(moved(shapes, {-origin.position, Quaternion::Identity()}),
+                                                   inertial.mass);
     return weight;
   }
 
@@ -198,15 +198,15 @@ class BodyReader {
 
   void read_visuals(const LinkPart& part, Body& body) {
     for (std::size_t i = 0; i < part.link->visual_array.size(); ++i) {
-      const urdf::Visual& given = *part.link->visual_array[i];
-      const std::string element = "link '" + part.link->name + "' visual " + std::to_string(i + 1);
-      const std::optional<Shape> shape = shapes_.read(*given.geometry, element, false);
+      const urdf::Visual& element = *part.link->visual_array[i];
+      const std::string where = "link '" + part.link->name + "' visual " + std::to_string(i + 1);
+      const std::optional<Shape> shape = shapes_.read(*element.geometry, where, false);
       if (!shape) continue;
-      Visual visual{*shape, body.link_in_body * (part.pose * to_pose(given.origin))};
-      if (given.material && given.material->texture_filename.empty()) {
-        const urdf::Color& color = given.material->color;
+      Visual visual{*shape, body.link_in_body * (part.pose * to_pose(element.origin))};
+      if (element.material && element.material->texture_filename.empty()) {
+        const urdf::Color& color = element.material->color;
         visual.rgba = {{color.r, color.g, color.b, color.a}};
-        check_color(source_ + ": " + element, visual.rgba);
+        check_color(source_ + ": " + where, visual.rgba);
         visual.has_color = true;
       }
       body.visuals.push_back(visual);
@@ -281,14 +281,10 @@ void read_bodies(const std::string& source, const std::string& folder, UrdfDocum
 
 namespace fs = std::filesystem;
 
-bool is_inside(const Bounds& bounds, const Vector3& place) {
-  return (place.array() >= bounds.min.array()).all() && (place.array() <= bounds.max.array()).all();
-}
-
 void check_starts_in_bounds(const std::string& file, const Scene& scene) {
   for (const Body& body : scene.bodies) {
     const Vector3& start = body.start.position;
-    if (body.fixed || is_inside(scene.bounds, start)) continue;
+    if (body.fixed || scene.bounds.contains(start)) continue;
     throw SceneError(file + ": body '" + body.name + "': start " + text::vector(start) +
                      " m is out of bounds; allowed: " + text::vector(scene.bounds.min) + " to " +
                      text::vector(scene.bounds.max));
@@ -301,7 +297,7 @@ void widen_bounds(Scene& scene) {
   Bounds wide = scene.bounds;
   for (const Body& body : scene.bodies) {
     const Vector3 margin = Vector3::Constant(kMargin + body.bounding_radius), &start = body.start.position;
-    if (body.fixed || is_inside(scene.bounds, start)) continue;
+    if (body.fixed || scene.bounds.contains(start)) continue;
     wide.min = wide.min.cwiseMin(start - margin), wide.max = wide.max.cwiseMax(start + margin);
   }
   if (wide.min == scene.bounds.min && wide.max == scene.bounds.max) return;

@@ -4,7 +4,6 @@
 
 #include "../text/yaml.h"
 #include "limits.h"
-#include "mr_hand_interaction/tracking/hand_track.h"
 
 namespace mrhi {
 namespace {
@@ -25,13 +24,13 @@ JointSpring read_spring(const YamlElement& element) {
 Detents read_detents(const YamlElement& element) {
   Detents detents;
   for (const std::string& key : checked_keys(element, {"at", "force"})) {
-    const YamlElement given = element.at(key);
+    const YamlElement value = element.at(key);
     if (key == "force") {
-      detents.force = read_number(given);
+      detents.force = read_number(value);
       continue;
     }
-    if (!given.node.IsSequence()) given.refuse("a list of places");
-    for (std::size_t i = 0; i < given.node.size(); ++i) detents.at.push_back(read_number(given.at(i)));
+    if (!value.node.IsSequence()) value.refuse("a list of places");
+    for (std::size_t i = 0; i < value.node.size(); ++i) detents.at.push_back(read_number(value.at(i)));
   }
   return detents;
 }
@@ -47,14 +46,14 @@ Latch read_latch(const YamlElement& element) {
 void read_joint(const YamlElement& element, Joint& joint) {
   for (const std::string& key :
        checked_keys(element, {"start", "damping", "friction", "restitution", "spring", "detents", "latch"})) {
-    const YamlElement given = element.at(key);
-    if (key == "start") joint.start = read_number(given);
-    if (key == "damping") joint.damping = read_number(given);
-    if (key == "friction") joint.friction = read_number(given);
-    if (key == "restitution") joint.restitution = read_number(given);
-    if (key == "spring") joint.spring = read_spring(given);
-    if (key == "detents") joint.detents = read_detents(given);
-    if (key == "latch") joint.latch = read_latch(given);
+    const YamlElement value = element.at(key);
+    if (key == "start") joint.start = read_number(value);
+    if (key == "damping") joint.damping = read_number(value);
+    if (key == "friction") joint.friction = read_number(value);
+    if (key == "restitution") joint.restitution = read_number(value);
+    if (key == "spring") joint.spring = read_spring(value);
+    if (key == "detents") joint.detents = read_detents(value);
+    if (key == "latch") joint.latch = read_latch(value);
   }
 }
 
@@ -63,8 +62,6 @@ void read_joint_settings(const YamlElement& element, Scene& scene) {
   for (const std::string& name : checked_keys(element, text::names_of(scene.joints)))
     read_joint(element.at(name), scene.joints[*find_joint(scene, name)]);
 }
-
-using Element = YamlElement;
 
 /// [kg]. The operator is coupled explicitly to other bodies, which a very light one would make unstable
 /// (docs/training.md).
@@ -79,7 +76,7 @@ const Vector3 kGyration{0.38, 0.39, 0.14};
 const Vector3 kCentre{0.0, -0.4, 0.0};
 
 /// Reads six numbers, each group of three in its range; or only the first three, if `three_will_do`.
-Twist read_six(const Element& element, const Range& first, const Range& last, bool three_will_do) {
+Twist read_six(const YamlElement& element, const Range& first, const Range& last, bool three_will_do) {
   auto numbers = yaml_numbers(element.node, 6);
   if (!numbers && three_will_do) numbers = yaml_numbers(element.node, 3);
   for (std::size_t i = 0; numbers && i < numbers->size(); ++i)
@@ -92,7 +89,7 @@ Twist read_six(const Element& element, const Range& first, const Range& last, bo
   return {Vector3(numbers->data()), Vector3(numbers->data() + 3)};
 }
 
-int read_body(const Element& element, bool fixed, const Scene& scene) {
+int read_body(const YamlElement& element, bool fixed, const Scene& scene) {
   std::vector<std::string> names;
   for (const Body& body : scene.bodies) {
     const bool on_joint = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& joint) {
@@ -108,7 +105,7 @@ int read_body(const Element& element, bool fixed, const Scene& scene) {
   return *find_body(scene, name);
 }
 
-void read_operator(const std::string& name, const Element& element, Scene& scene) {
+void read_operator(const std::string& name, const YamlElement& element, Scene& scene) {
   if (find_body(scene, name)) element.fail("a link has the name '" + name + "'; allowed: a name of its own");
   Operator op;
   Body body;
@@ -123,15 +120,15 @@ void read_operator(const std::string& name, const Element& element, Scene& scene
           ? std::vector<std::string>{}
           : checked_keys(element, {"mass", "inertia", "centre", "start", "twist", "restraint", "reach"});
   for (const std::string& key : keys) {
-    const Element given = element.at(key);
-    if (key == "mass") body.mass = read_number(given, kOperatorMass, " kg");
-    if (key == "inertia") inertia = read_vector(given, {0.01, 1000});
-    if (key == "centre") centre = read_vector(given, {-3, 3});
-    if (key == "twist") body.start_twist = read_six(given, {-10, 10}, {-10, 10}, false);
-    if (key == "restraint") op.restraint = read_body(given, true, scene);
-    if (key == "reach") op.reach = read_number(given, kRestraintReach, " m");
+    const YamlElement value = element.at(key);
+    if (key == "mass") body.mass = read_number(value, kOperatorMass, " kg");
+    if (key == "inertia") inertia = read_vector(value, {0.01, 1000});
+    if (key == "centre") centre = read_vector(value, {-3, 3});
+    if (key == "twist") body.start_twist = read_six(value, {-10, 10}, {-10, 10}, false);
+    if (key == "restraint") op.restraint = read_body(value, true, scene);
+    if (key == "reach") op.reach = read_number(value, kRestraintReach, " m");
     if (key != "start") continue;
-    const Twist numbers = read_six(given, kStart, {-2 * M_PI, 2 * M_PI}, true);
+    const Twist numbers = read_six(value, kStart, {-2 * M_PI, 2 * M_PI}, true);
     start = {numbers.linear, Quaternion(Eigen::AngleAxisd(numbers.angular.z(), Vector3::UnitZ()) *
                                         Eigen::AngleAxisd(numbers.angular.y(), Vector3::UnitY()) *
                                         Eigen::AngleAxisd(numbers.angular.x(), Vector3::UnitX()))};
@@ -149,7 +146,7 @@ void read_operator(const std::string& name, const Element& element, Scene& scene
   scene.operators.push_back(op);
 }
 
-void read_tether(const Element& element, Scene& scene) {
+void read_tether(const YamlElement& element, Scene& scene) {
   Tether tether;
   Vector3 at = Vector3::Zero(), anchor = Vector3::Zero();
   const std::vector<std::string> keys = checked_keys(element, {"body", "at", "fixture", "anchor", "length"});
@@ -158,12 +155,12 @@ void read_tether(const Element& element, Scene& scene) {
       element.fail(std::string("has no '") + needed + "'; allowed: body, fixture and length always");
   }
   for (const std::string& key : keys) {
-    const Element given = element.at(key);
-    if (key == "body") tether.body = read_body(given, false, scene);
-    if (key == "fixture") tether.fixture = read_body(given, true, scene);
-    if (key == "at") at = read_vector(given, {-10, 10});
-    if (key == "anchor") anchor = read_vector(given, {-100, 100});
-    if (key == "length") tether.length = read_number(given, kTetherLength, " m");
+    const YamlElement value = element.at(key);
+    if (key == "body") tether.body = read_body(value, false, scene);
+    if (key == "fixture") tether.fixture = read_body(value, true, scene);
+    if (key == "at") at = read_vector(value, {-10, 10});
+    if (key == "anchor") anchor = read_vector(value, {-100, 100});
+    if (key == "length") tether.length = read_number(value, kTetherLength, " m");
   }
   tether.at = scene.bodies[tether.body].link_in_body * at;
   tether.anchor = scene.bodies[tether.fixture].link_in_body * anchor;
@@ -173,9 +170,9 @@ void read_tether(const Element& element, Scene& scene) {
 /// Adds the bodies of operators to a scene whose other bodies are known.
 void read_operators(const YamlElement& element, Scene& scene) {
   if (!element.node.IsMap()) element.refuse("a map of operators by their names");
-  if (element.node.size() + scene.operators.size() > kMaxHands)
+  if (element.node.size() + scene.operators.size() > body_limits::kMaxOperators)
     element.fail("has " + std::to_string(element.node.size()) + " operators; allowed: at most " +
-                 std::to_string(kMaxHands));
+                 std::to_string(body_limits::kMaxOperators));
   for (const auto& entry : element.node) {
     const std::string name = yaml_text(entry.first);
     if (!is_name(name)) element.fail("name '" + name + "' is not allowed; allowed: " + kNameIs);
@@ -188,7 +185,7 @@ void read_tethers(const YamlElement& element, Scene& scene) {
   for (std::size_t i = 0; i < element.node.size(); ++i) read_tether(element.at(i), scene);
 }
 
-void read_bounds(const Element& element, Bounds& bounds) {
+void read_bounds(const YamlElement& element, Bounds& bounds) {
   for (const std::string& key : checked_keys(element, {"min", "max"})) {
     (key == "min" ? bounds.min : bounds.max) = read_vector(element.at(key));
   }
@@ -197,34 +194,34 @@ void read_bounds(const Element& element, Bounds& bounds) {
                "; allowed: min below max on each axis");
 }
 
-void read_material(const Element& element, Body& body) {
+void read_material(const YamlElement& element, Body& body) {
   const std::vector<std::string> keys = checked_keys(element, text::names_of(material_fields()));
   for (const MaterialField& field : material_fields()) {
     if (std::find(keys.begin(), keys.end(), field.name) == keys.end()) continue;
-    const Element given = element.at(field.name);
-    body.material.*field.value = read_number(given, field.range, field.unit);
+    const YamlElement value = element.at(field.name);
+    body.material.*field.value = read_number(value, field.range, field.unit);
     body.own_material.*field.own = true;
   }
   if (const auto conflict = material_conflict(body.material)) element.fail(*conflict);
 }
 
-void read_materials(const Element& element, Scene& scene) {
+void read_materials(const YamlElement& element, Scene& scene) {
   for (const std::string& link : checked_keys(element, text::names_of(scene.bodies)))
     read_material(element.at(link), scene.bodies[*find_body(scene, link)]);
 }
 
-void read_grasps(const Element& element, Scene& scene) {
+void read_grasps(const YamlElement& element, Scene& scene) {
   for (const std::string& link : checked_keys(element, graspable_bodies(scene))) {
-    const Element given = element.at(link);
-    const auto mode = given.node.IsScalar() ? grasp_mode(given.node.Scalar()) : std::nullopt;
-    if (!mode) given.refuse(kGraspModes);
+    const YamlElement value = element.at(link);
+    const auto mode = value.node.IsScalar() ? grasp_mode(value.node.Scalar()) : std::nullopt;
+    if (!mode) value.refuse(kGraspModes);
     scene.bodies[*find_body(scene, link)].grasp = *mode;
   }
 }
 
 /// Reads start velocities of bodies, [vx, vy, vz, wx, wy, wz] as in the service. A body on a joint keeps the
 /// component that the joint allows.
-void read_twists(const Element& element, Scene& scene) {
+void read_twists(const YamlElement& element, Scene& scene) {
   std::vector<std::string> links;
   for (const Body& body : scene.bodies) {
     if (!body.fixed) links.push_back(body.name);
@@ -237,9 +234,9 @@ void read_twists(const Element& element, Scene& scene) {
 }  // namespace
 
 Twist read_twist(const YamlElement& element) {
-  const auto given = yaml_numbers(element.node, 6);
-  const Twist twist = given ? Twist{Vector3(given->data()), Vector3(given->data() + 3)} : Twist{};
-  if (!given || !body_limits::kSpeed.contains(twist.linear.norm()) ||
+  const auto value = yaml_numbers(element.node, 6);
+  const Twist twist = value ? Twist{Vector3(value->data()), Vector3(value->data() + 3)} : Twist{};
+  if (!value || !body_limits::kSpeed.contains(twist.linear.norm()) ||
       !body_limits::kSpin.contains(twist.angular.norm()))
     element.refuse("six numbers [vx, vy, vz, wx, wy, wz], at most " + text::number(body_limits::kSpeed.max) +
                    " m/s and " + text::number(body_limits::kSpin.max) + " rad/s");
@@ -248,14 +245,14 @@ Twist read_twist(const YamlElement& element) {
 
 void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
   read_yaml<SceneError>(yaml_file, [&] {
-    const Element root{yaml_file, "", load_yaml_file(yaml_file)};
+    const YamlElement root{yaml_file, "", load_yaml_file(yaml_file)};
     if (root.node.IsNull()) return;
     const std::vector<std::string> keys = checked_keys(
         root,
         {"gravity", "bounds", "materials", "grasp", "twists", "joints", "operator", "operators", "tethers"});
     const auto has = [&](const char* key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); };
     for (const std::string& key : keys) {
-      const Element element = root.at(key);
+      const YamlElement element = root.at(key);
       if (key == "gravity") scene.gravity = read_vector(element, body_limits::kGravity);
       if (key == "bounds") read_bounds(element, scene.bounds);
       if (key == "materials") read_materials(element, scene);

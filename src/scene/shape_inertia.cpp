@@ -186,7 +186,7 @@ Eigen::AlignedBox3d box_around(const PlacedShape& shape) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-1.0, 1.0}) {
       const Vector3 n = shape.pose.orientation.conjugate() * Vector3(side * Vector3::Unit(axis));
-      box.extend(shape.pose * std::visit([&](const auto& asked) { return asked.farthest(n); }, shape.shape));
+      box.extend(shape.pose * std::visit([&](const auto& any) { return any.farthest(n); }, shape.shape));
     }
   return box;
 }
@@ -217,12 +217,12 @@ TriangleMesh convex_hull(const TriangleMesh& mesh) {
 /// Returns a mesh unchanged.
 TriangleMesh surface_of(const PlacedShape& shape) {
   TriangleMesh mesh;
-  if (const TriangleMesh* const given = mesh_of(shape)) {
-    mesh = *given;
+  if (const TriangleMesh* const triangles = mesh_of(shape)) {
+    mesh = *triangles;
   } else {
     constexpr int kDirections = 300;
     const auto add_farthest = [&](const Vector3& n) {
-      mesh.vertices.push_back(std::visit([&](const auto& asked) { return asked.farthest(n); }, shape.shape));
+      mesh.vertices.push_back(std::visit([&](const auto& any) { return any.farthest(n); }, shape.shape));
     };
     for (int corner = 0; corner < 8; ++corner)
       add_farthest(Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1).normalized());
@@ -240,9 +240,9 @@ TriangleMesh surface_of(const PlacedShape& shape) {
 }
 
 SolidMoments shared_moments(const TriangleMesh& mesh, double volume) {
-  constexpr double kNeglected = 1e-3;
+  constexpr double kMinSharedFraction = 1e-3;
   const SolidMoments shared = Columns(mesh).shared();
-  return shared.volume > kNeglected * volume ? shared : SolidMoments{};
+  return shared.volume > kMinSharedFraction * volume ? shared : SolidMoments{};
 }
 
 /// Sums the signed tetrahedra from the origin to the triangles (Tonon 2004).

@@ -15,9 +15,9 @@ using Triangles = std::vector<Triangle>;
 
 /// Distances at which vertices are joined if that closes the surface, over the mesh's extent: first gaps from
 /// rounding, then those that exporters leave.
-constexpr double kSeams[] = {1e-6, 1e-5, 1e-4};
+constexpr double kWeldDistances[] = {1e-6, 1e-5, 1e-4};
 /// Largest width of a hole that is filled, over the extent.
-constexpr double kSmallHole = 0.05;
+constexpr double kMaxFilledHole = 0.05;
 /// Smallest volume of a solid, over the cube of its extent.
 constexpr double kMinVolume = 1e-9;
 
@@ -69,7 +69,7 @@ bool is_solid(const TriangleMesh& mesh, const Triangles& part) {
   return std::abs(volume_of(mesh, part)) > kMinVolume * extent * extent * extent && is_closed(part);
 }
 
-/// Joins vertices at most `distance` apart, and drops triangles that become degenerate.
+/// Joins vertices at max_triangles `distance` apart, and drops triangles that become degenerate.
 void weld(TriangleMesh& mesh, double distance) {
   using Cell = std::array<long long, 3>;
   std::map<Cell, std::vector<int>> cells;
@@ -178,8 +178,8 @@ Triangles without_doubled_patches(const std::vector<Triangles>& patches, bool ca
 /// different resolutions (T-junctions).
 Triangles divided_at_border(const TriangleMesh& mesh, Triangles triangles, double distance) {
   constexpr std::size_t kMaxBorder = 4000;  // edges: each is compared with all others
-  const std::size_t most = 2 * triangles.size() + kMaxBorder;
-  for (bool divides = true; divides && triangles.size() < most;) {
+  const std::size_t max_triangles = 2 * triangles.size() + kMaxBorder;
+  for (bool divides = true; divides && triangles.size() < max_triangles;) {
     divides = false;
     std::vector<std::pair<int, int>> border;
     for (const auto& [ends, edge] : edges_of(triangles))
@@ -220,7 +220,7 @@ Triangles divided_at_border(const TriangleMesh& mesh, Triangles triangles, doubl
 /// Fills the holes of a part that are small or lack one triangle with fans. Returns true if a hole that is
 /// not small was filled.
 bool fill_holes(const TriangleMesh& mesh, Triangles& part) {
-  const double widest = kSmallHole * extent_of(mesh, part);
+  const double widest = kMaxFilledHole * extent_of(mesh, part);
   std::map<int, int> next;  // along the border
   for (const auto& [ends, edge] : edges_of(part)) {
     if (edge.balance == 0) continue;
@@ -382,9 +382,9 @@ double signed_volume(const TriangleMesh& mesh) {
 
 std::vector<std::string> make_solid(TriangleMesh& mesh) {
   mesh.parts.clear();
-  const auto put_if_solid = [&](const TriangleMesh& given, const std::vector<Triangles>& parts) {
-    if (!are_solid(given, parts)) return false;
-    mesh.vertices = given.vertices;
+  const auto put_if_solid = [&](const TriangleMesh& candidate, const std::vector<Triangles>& parts) {
+    if (!are_solid(candidate, parts)) return false;
+    mesh.vertices = candidate.vertices;
     put(parts, mesh);
     return true;
   };
@@ -392,7 +392,7 @@ std::vector<std::string> make_solid(TriangleMesh& mesh) {
   const double extent = extent_of(mesh, mesh.triangles);
   if (!(extent > 0.0)) throw NoVolume(kNoVolume);
   TriangleMesh best = mesh;
-  for (const double seam : kSeams) {
+  for (const double seam : kWeldDistances) {
     TriangleMesh welded = mesh;
     weld(welded, seam * extent);
     const std::vector<Triangles> as_they_are = parts_of(welded.triangles);
@@ -405,10 +405,10 @@ std::vector<std::string> make_solid(TriangleMesh& mesh) {
     if (whole && put_if_solid(welded, parts_of(joined))) return {};
     welded.triangles = without_doubled_patches(parts, false);
     if (put_if_solid(welded, parts_of(welded.triangles))) return {};
-    if (seam == kSeams[0]) best = welded;
+    if (seam == kWeldDistances[0]) best = welded;
   }
   mesh = best;
-  mesh.triangles = divided_at_border(mesh, mesh.triangles, kSeams[2] * extent);
+  mesh.triangles = divided_at_border(mesh, mesh.triangles, kWeldDistances[2] * extent);
   std::vector<std::string> warnings = put_with_hull(parts_of(mesh.triangles), mesh);
   const auto has_area = [&](const Triangle& t) {
     const Vector3 a = corner(mesh, t, 0);

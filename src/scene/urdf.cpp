@@ -38,7 +38,6 @@ class Complaints : public console_bridge::OutputHandler {
   std::string text_;
 };
 
-/// Appends a character as UTF-8.
 void append_utf8(std::uint32_t code, std::string& utf8) {
   const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;  // continuation bytes
   constexpr std::uint32_t kFirst[] = {0, 0xC0, 0xE0, 0xF0};
@@ -110,7 +109,6 @@ bool is_fixed(const urdf::Link& link) {
   return link.parent_joint->type == urdf::Joint::FIXED;
 }
 
-/// The places of all links, in one pass from the root.
 LinkPlaces places_in(const urdf::ModelInterface& model) {
   LinkPlaces places{{model.getRoot(), {model.getRoot(), Pose{}, Pose{}}}};
   std::vector<urdf::LinkConstSharedPtr> open{model.getRoot()};
@@ -129,21 +127,21 @@ LinkPlaces places_in(const urdf::ModelInterface& model) {
   return places;
 }
 
-/// True if all given masses are 0: other simulators mark fixtures so.
+/// True if there are masses and all are 0: other simulators mark fixtures so.
 bool is_weightless(const LinkedBody& body) {
-  bool is_given = false;
+  bool has_mass = false;
   for (const LinkPart& part : body.parts) {
     if (!part.link->inertial) continue;
     if (part.link->inertial->mass != 0.0) return false;
-    is_given = true;
+    has_mass = true;
   }
-  return is_given;
+  return has_mass;
 }
 
-void read_limits(const urdf::Joint& given, Joint& joint) {
-  if (given.type != urdf::Joint::CONTINUOUS && given.limits) {
-    joint.lower = given.limits->lower;
-    joint.upper = given.limits->upper;
+void read_limits(const urdf::Joint& source, Joint& joint) {
+  if (source.type != urdf::Joint::CONTINUOUS && source.limits) {
+    joint.lower = source.limits->lower;
+    joint.upper = source.limits->upper;
   }
   joint.start = std::min(std::max(0.0, joint.lower), joint.upper);
 }
@@ -153,10 +151,10 @@ using BodyIndices = std::map<std::string, int>;
 
 /// Sets the parent: the nearest body above. Links without geometry on fixed joints are no bodies.
 void set_parent(const UrdfDocument& document, const Scene& scene, const BodyIndices& bodies,
-                const urdf::Joint& given, Joint& joint) {
+                const urdf::Joint& source, Joint& joint) {
   const urdf::ModelInterface& model = *document.model;
-  urdf::LinkConstSharedPtr link = model.getLink(given.parent_link_name);
-  joint.in_parent = to_pose(given.parent_to_joint_origin_transform);
+  urdf::LinkConstSharedPtr link = model.getLink(source.parent_link_name);
+  joint.in_parent = to_pose(source.parent_to_joint_origin_transform);
   for (; link != model.getRoot() && bodies.count(link->name) == 0; link = link->getParent())
     joint.in_parent = to_pose(link->parent_joint->parent_to_joint_origin_transform) * joint.in_parent;
   if (link == model.getRoot()) return;
@@ -165,33 +163,33 @@ void set_parent(const UrdfDocument& document, const Scene& scene, const BodyIndi
 }
 
 Joint read_joint(const std::string& file, const UrdfDocument& document, const Scene& scene,
-                 const BodyIndices& bodies, const urdf::Joint& given) {
-  const std::string what = file + ": joint " + text::quoted(given.name) + ": ";
-  if (!is_name(given.name)) throw SceneError(what + "this name is not allowed; allowed: " + kNameIs);
+                 const BodyIndices& bodies, const urdf::Joint& source) {
+  const std::string what = file + ": joint " + text::quoted(source.name) + ": ";
+  if (!is_name(source.name)) throw SceneError(what + "this name is not allowed; allowed: " + kNameIs);
   Joint joint;
-  joint.name = given.name;
-  joint.kind = given.type == urdf::Joint::PRISMATIC ? JointKind::sliding : JointKind::turning;
-  const Vector3 axis{given.axis.x, given.axis.y, given.axis.z};
+  joint.name = source.name;
+  joint.kind = source.type == urdf::Joint::PRISMATIC ? JointKind::sliding : JointKind::turning;
+  const Vector3 axis{source.axis.x, source.axis.y, source.axis.z};
   const Range& length = joint_ranges::kAxis;  // beyond it, squares would not be finite
   if (!axis.allFinite() || !length.contains(axis.stableNorm()))
     throw SceneError(what + "axis " + text::vector(axis) + "; allowed: a direction, its length " +
                      length.describe());
   joint.axis = axis.normalized();
-  joint.child = bodies.at(given.child_link_name);
+  joint.child = bodies.at(source.child_link_name);
   joint.in_child = scene.bodies[joint.child].link_in_body;
-  read_limits(given, joint);
-  set_parent(document, scene, bodies, given, joint);
-  if (given.dynamics) {
-    joint.damping = given.dynamics->damping;
-    joint.friction = given.dynamics->friction;
+  read_limits(source, joint);
+  set_parent(document, scene, bodies, source, joint);
+  if (source.dynamics) {
+    joint.damping = source.dynamics->damping;
+    joint.friction = source.dynamics->friction;
   }
   return joint;
 }
 
 }  // namespace
 
-UrdfDocument parse_urdf(const std::string& source, const std::string& given) {
-  std::string xml = is_utf8(given) ? given : from_utf16(given).value_or(from_latin1(given));
+UrdfDocument parse_urdf(const std::string& source, const std::string& bytes) {
+  std::string xml = is_utf8(bytes) ? bytes : from_utf16(bytes).value_or(from_latin1(bytes));
   xml.erase(xml.find_last_not_of('\0') + 1);  // C programs may write the terminating zero
   if (const auto wrong = xml_danger(xml)) throw SceneError(source + ": bad URDF: " + *wrong);
   UrdfDocument document;

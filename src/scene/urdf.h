@@ -33,11 +33,13 @@ class Warnings {
   }
 
   std::vector<std::string> lines() const {
-    constexpr std::size_t kNamed = 4;
+    constexpr std::size_t kMaxNamedItems = 4;
     std::vector<std::string> all;
     for (const auto& [what, items] : lines_) {
-      std::vector<std::string> named(items.begin(), items.begin() + long(std::min(kNamed, items.size())));
-      if (items.size() > kNamed) named.push_back("and " + std::to_string(items.size() - kNamed) + " more");
+      std::vector<std::string> named(items.begin(),
+                                     items.begin() + long(std::min(kMaxNamedItems, items.size())));
+      if (items.size() > kMaxNamedItems)
+        named.push_back("and " + std::to_string(items.size() - kMaxNamedItems) + " more");
       all.push_back(text::one_line(what + ": " + text::joined(named), 600));
     }
     return all;

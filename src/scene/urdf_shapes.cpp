@@ -62,26 +62,25 @@ bool begins_with(const std::string& text, const std::string& prefix) {
 }
 
 /// A kind and its sizes, read from the result of as_filename().
-struct GivenShape {
+struct SizedShape {
   const ShapeKind* kind;
   Sizes size;
 };
 
-std::optional<GivenShape> from_filename(const std::string& filename) {
+std::optional<SizedShape> from_filename(const std::string& filename) {
   if (!begins_with(filename, kPrefix)) return std::nullopt;
   std::istringstream words(filename.substr(kPrefix.size()));
   words.imbue(std::locale::classic());
   std::string name;
   words >> name;
-  GivenShape given{find_shape_kind(name), {}};
-  if (given.kind == nullptr) return std::nullopt;
-  for (std::string word; words >> word;) given.size.push_back(size_in(word));
-  given.size.resize(given.kind->sizes.size(), 0.0);
-  return given;
+  SizedShape shape{find_shape_kind(name), {}};
+  if (shape.kind == nullptr) return std::nullopt;
+  for (std::string word; words >> word;) shape.size.push_back(size_in(word));
+  shape.size.resize(shape.kind->sizes.size(), 0.0);
+  return shape;
 }
 
-/// Decodes percent-encoding.
-std::string decoded(const std::string& uri) {
+std::string percent_decoded(const std::string& uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
     int code = 0;
@@ -173,7 +172,7 @@ std::string as_filename(const ShapeKind& kind, const std::vector<double>& size) 
 }
 
 double bounding_radius(const Shape& shape) {
-  return std::visit([](const auto& asked) { return asked.bounding_radius(); }, shape);
+  return std::visit([](const auto& any) { return any.bounding_radius(); }, shape);
 }
 
 struct ShapeReader::Named {
@@ -194,12 +193,12 @@ ShapeReader::Named ShapeReader::named(const urdf::Mesh& mesh) const {
 
 /// Finds a mesh file by its name as written, with backslashes as slashes, percent-decoded, or ignoring case.
 std::string ShapeReader::find_file(const std::string& uri) const {
-  const auto given = options_.mesh_files.find(uri);
-  if (given != options_.mesh_files.end()) return given->second;
+  const auto replaced = options_.mesh_files.find(uri);
+  if (replaced != options_.mesh_files.end()) return replaced->second;
   std::string path = uri;
   std::string file = find_path(path);
   if (file.empty()) std::replace(path.begin(), path.end(), '\\', '/'), file = find_path(path);
-  if (file.empty()) path = decoded(path), file = find_path(path);
+  if (file.empty()) path = percent_decoded(path), file = find_path(path);
   if (!file.empty()) return file;
   file = find_ignoring_case(folder_, path);
   if (!file.empty()) warnings_.add("files are found by names in another case", text::quoted(uri, 200));
@@ -266,8 +265,8 @@ std::optional<Shape> ShapeReader::read(const urdf::Geometry& geometry, const std
     }
     default: {
       const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
-      if (const auto given = from_filename(mesh.filename))
-        return make(given->kind->name, given->size, element);
+      if (const auto shape = from_filename(mesh.filename))
+        return make(shape->kind->name, shape->size, element);
       return read_mesh(mesh, element, solid);
     }
   }

@@ -29,21 +29,21 @@ constexpr double kReleaseClearance = 0.0008;
 /// or to -kPadDepth, once it has opened by this fraction of the distance to touch_aperture, and by this [m].
 constexpr double kReleaseFraction = 0.9, kMinRelease = 0.015;
 /// Fingers that have opened by this fraction of that distance do not carry the body.
-constexpr double kOpensFraction = 0.5;
+constexpr double kOpeningFraction = 0.5;
 /// Once the hand has opened by this, a grip that has lost a side does not become active, and one that has
 /// lost both is not [m].
 constexpr double kMinOpening = 0.0015;
-/// No grip becomes active while its fingers open faster than this [m/s].
-constexpr double kOpensSpeed = 1.0;
+/// No grip begins, or becomes active, while its fingers open faster than this [m/s].
+constexpr double kMaxTakingSpeed = 0.03, kMaxActivationSpeed = 1.0;
 /// A grip waits this long for a lost hand [s]. It continues if the hand returns within this of the pose in
 /// which it held the body [m], [rad].
 constexpr double kMaxLoss = 1.05, kReturnDistance = 0.03, kReturnAngle = 0.5;
 /// Stiffness of a grip over that of a contact: several fingers, on two sides.
 constexpr double kStiffnessRatio = 5.0;
 /// Distance from the springs to their centre [m].
-constexpr double kReach = 0.04;
-/// Time constant at which a grip's springs yield to the contacts [s].
-constexpr double kYieldTime = 0.1;
+constexpr double kSpringDistance = 0.04;
+/// Time constant at which a grip's springs comply with the contacts [s].
+constexpr double kComplianceTime = 0.1;
 /// Bond of a hand of unlimited strength [N].
 constexpr double kUnlimitedBond = 1e5;
 
@@ -67,13 +67,22 @@ double opened_by(const HandTrack& track, double seconds, Grip& grip) {
   return grip.mean_aperture - grip.min_aperture;
 }
 
-/// True if the fingers opened fast in the last frame, beyond the tracker's noise.
-bool opens_now(const HandTrack& track, double seconds, const Grip& grip) {
+/// True if the fingers opened faster than this in the last frame, beyond the tracker's noise.
+bool opens_faster_than(double speed, const HandTrack& track, double seconds, const Grip& grip) {
   const double change = aperture(grip, track.current) - aperture(grip, track.previous);
-  return change - noise_margin(track) > kOpensSpeed * seconds;
+  return change - noise_margin(track) > speed * seconds;
 }
 
-bool still_closes(const HandTrack& track, const Grip& grip) {
+/// True if the hand, at this fraction of the frame, has opened beyond the tracker's noise: of an active grip,
+/// beyond where both sides just touch the body.
+bool is_open_at(double fraction, const HandTrack& track, const Grip& grip) {
+  const double before = aperture(grip, track.previous);
+  const double now = before + fraction * (aperture(grip, track.current) - before);
+  if (now - std::min(grip.min_aperture, before) - noise_margin(track) <= kMinOpening) return false;
+  return !grip.active || now > grip.touch_aperture + kReleaseClearance;
+}
+
+bool is_closing(const HandTrack& track, const Grip& grip) {
   for (int finger = 0; finger < kFingers; ++finger)
     if (grip.takes_part(finger) && ClosingHand::closes(track, grip.by_palm, finger)) return true;
   return false;
@@ -91,11 +100,6 @@ Pose grip_pose(const Grip& grip) {
   const auto fit = registered(grip.in_body.data(), grip.in_hand.data(), kGripPoints);
   if (!fit) return grip.in_palm;
   return grip.in_palm * Pose{fit->to - fit->rotation * fit->from, Quaternion(fit->rotation)};
-}
-
-/// True if a hand that is seen again elsewhere may yet return to the body.
-bool may_return(const HandTrack& track, const Grip& grip) {
-  return to_seconds(track.last_seen - *grip.lost) <= kMaxLoss;
 }
 
 }  // namespace
@@ -132,7 +136,7 @@ void GraspAssist::begin_frame(const Neighbours& neighbours, double seconds, Simu
   seconds_ = seconds;
   closing_.clear();
   if (!objects_.any_graspable()) return state.grips.clear();
-  const auto is_over = [&](Grip& grip) { return ends(state, grip); };
+  const auto is_over = [&](Grip& grip) { return has_ended(state, grip); };
   state.grips.erase(std::remove_if(state.grips.begin(), state.grips.end(), is_over), state.grips.end());
   for (Grip& grip : state.grips)
     if (!grip.lost) follow(state, grip);
@@ -195,23 +199,24 @@ bool GraspAssist::resumes(const SimulationState& state, Grip& grip) const {
 
 /// True if the grip is over. A hand that releases a body that it supported is still inside it: it touches it
 /// lightly until it has left the body, or closes on it again.
-bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
+bool GraspAssist::has_ended(const SimulationState& state, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
-  if (grip.lost) return track.active && !resumes(state, grip) && !may_return(track, grip);
+  if (grip.lost)  // a hand that is seen again elsewhere may yet return to the body
+    return track.active && !resumes(state, grip) && to_seconds(track.last_seen - *grip.lost) > kMaxLoss;
   const GraspMode mode = objects_.mode_of(grip.body);
   if (!track.active || mode == GraspMode::free) return true;
   if (track.appeared) {  // it jumped away, which is as good as a loss
     lose(track.last_seen, grip_pose(grip), grip);
     return grip.released;
   }
-  const TouchingSides touching = objects_.touching_sides(grip, state.contacts);
+  const TouchingGroups touching = objects_.touching_groups(grip, state.contacts);
   if (mode == GraspMode::never) {
     grip.released = true;
     grip.active = false;
     return touching.none();
   }
-  if (grip.released) return touching.none() || still_closes(track, grip);
-  if (seconds_ <= 0.0 || !opens(state, touching, grip)) return false;
+  if (grip.released) return touching.none() || is_closing(track, grip);
+  if (seconds_ <= 0.0 || !has_opened(state, touching, grip)) return false;
   // The links of a linkage follow the fingers as they open, like tongs: their contacts keep their force.
   grip.released = grip.active && objects_.object_of(grip.body).size() == 1;
   grip.active = false;
@@ -219,7 +224,7 @@ bool GraspAssist::ends(const SimulationState& state, Grip& grip) const {
 }
 
 /// True if the hand has opened enough to release the body, or has left it.
-bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const {
+bool GraspAssist::has_opened(const SimulationState& state, const TouchingGroups& touching, Grip& grip) const {
   const HandTrack& track = state.hands[grip.hand];
   grip.opened = opened_by(track, seconds_, grip);
   const bool is_wide = grip.opened > release_opening(grip, kReleaseFraction);
@@ -234,9 +239,10 @@ bool GraspAssist::opens(const SimulationState& state, const TouchingSides& touch
 /// Moves the grip with its fingers, unless they open.
 void GraspAssist::follow(SimulationState& state, Grip& grip) {
   const HandTrack& track = state.hands[grip.hand];
-  grip.closes = still_closes(track, grip);
+  grip.closes = is_closing(track, grip);
   grip.in_palm_before = grip.in_palm;
-  if (grip.opened <= release_opening(grip, kOpensFraction)) grip.in_palm = moved_in_palm(grip, track.current);
+  if (grip.opened <= release_opening(grip, kOpeningFraction))
+    grip.in_palm = moved_in_palm(grip, track.current);
   if (!grip.active) return;
   if (grip.closes && scene_.bodies[grip.body].flies) closing_.push_back({grip.hand, grip.body});
   // A hand that is rendered before a fixture does not collide with what it holds there.
@@ -261,7 +267,7 @@ void GraspAssist::take_held_objects(bool seen, double fraction, SimulationState&
       OpposingContacts one_of_them;
       one_of_them.body = body, one_of_them.fingers_mask = 1 << 1;
       one_of_them.base = one_of_them.fingers = one->point;
-      take(slot, one_of_them, fraction, state);
+      take(seen, slot, one_of_them, fraction, state);
       continue;
     }
     const bool visited = std::any_of(contacts.begin(), one, [&](const Contact& before) {
@@ -280,7 +286,7 @@ void GraspAssist::take_held_objects(bool seen, double fraction, SimulationState&
     if (!found) found = objects_.opposing_contacts(slot, body, true, contacts);
     if (!found || (seen && found->depth <= kPadDepth)) continue;
     if (is_new || known->by_palm != found->by_palm || (found->fingers_mask & ~known->fingers) != 0)
-      take(slot, *found, fraction, state);
+      take(seen, slot, *found, fraction, state);
   }
 }
 
@@ -290,9 +296,9 @@ std::vector<Grip>::iterator GraspAssist::find_grip(std::size_t slot, std::size_t
                       [&](const Grip& grip) { return objects_.is_in(grip, slot, body); });
 }
 
-/// Begins a grip, in place of one that has fewer fingers. The springs of a grip on a linkage act on the link
-/// that the thumb or the palm touches.
-void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, double fraction,
+/// Begins a grip, unless a `seen` hand opens, in place of one that has fewer fingers. The springs of a grip
+/// on a linkage act on the link that the thumb or the palm touches.
+void GraspAssist::take(bool seen, std::size_t slot, const OpposingContacts& opposing, double fraction,
                        SimulationState& state) const {
   const std::size_t b = opposing.body;
   const Hand &from = state.hands[slot].previous, &to = state.hands[slot].current;
@@ -304,6 +310,9 @@ void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, doubl
   grip.by_palm = opposing.by_palm;
   grip.fingers = opposing.fingers_mask;
   const auto known = find_grip(slot, b, state);
+  if (seen && !grip.released && known == state.grips.end() &&
+      opens_faster_than(kMaxTakingSpeed, state.hands[slot], seconds_, grip))
+    return;
   if (known != state.grips.end()) {
     if (known->by_palm == grip.by_palm) grip.fingers |= known->fingers;
     state.grips.erase(known);
@@ -322,12 +331,12 @@ void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, doubl
   const Vector3 centre = 0.5 * (opposing.base + opposing.fingers);
   for (std::size_t i = 0; i < kGripPoints; ++i) {
     const Vector3 corner(i % 2 == 0 ? -1 : 1, i < 2 ? -1 : 1, i == 0 || i == 3 ? 1 : -1);
-    grip.in_hand[i] = from.palm.to_local(centre + kReach / std::sqrt(3.0) * corner);
+    grip.in_hand[i] = from.palm.to_local(centre + kSpringDistance / std::sqrt(3.0) * corner);
   }
   grip.pads = distal_ends(from);
   grip.in_palm_before = moved_in_palm(grip, from);
   grip.in_palm = moved_in_palm(grip, to);
-  place(fraction, fraction, state.hands[slot], grip);
+  place_springs(fraction, fraction, state.hands[slot], grip);
   for (std::size_t i = 0; i < kGripPoints; ++i)
     grip.in_body[i] = state.bodies[b].pose.to_local(grip.point[i]);
   const auto after = [](const Grip& x, const Grip& y) {
@@ -364,8 +373,7 @@ void GraspAssist::set_compliance(const SimulationState& state, double step, Cont
   contact.compliance = kept + step * std::max(0.0, -contact.normal.dot(velocity));
 }
 
-/// Sets position and velocity of the springs' ends on the hand.
-void GraspAssist::place(double fraction, double until, const HandTrack& track, Grip& grip) const {
+void GraspAssist::place_springs(double fraction, double until, const HandTrack& track, Grip& grip) const {
   const Pose from = track.previous.palm * grip.in_palm_before;
   const Pose to = track.current.palm * grip.in_palm;
   for (std::size_t i = 0; i < kGripPoints; ++i) {
@@ -384,8 +392,8 @@ void GraspAssist::place(double fraction, double until, const HandTrack& track, G
 }
 
 /// Leaves to the contacts what they do alone: the springs' mean extension fades in the direction in which
-/// base and fingers press the body, and where it opposes their friction.
-void GraspAssist::yield_to_contacts(double step, const SimulationState& state, Grip& grip) const {
+/// base and fingers load the body, and where it opposes their friction.
+void GraspAssist::comply_with_contacts(double step, const SimulationState& state, Grip& grip) const {
   Vector3 line = Vector3::Zero(), friction = Vector3::Zero();
   for (const Contact& contact : state.contacts) {
     if (!contact.touching() || !objects_.is_in(grip, contact.key.hand, contact.key.body)) continue;
@@ -399,8 +407,9 @@ void GraspAssist::yield_to_contacts(double step, const SimulationState& state, G
     extension += (grip.point[i] - pose * grip.in_body[i]) / kGripPoints;
   Vector3 needless = extension.dot(line) * line;
   needless += std::min((extension - needless).dot(friction), 0.0) * friction;
-  const Vector3 yielded = pose.orientation.conjugate() * (std::min(step / kYieldTime, 1.0) * needless);
-  for (Vector3& end : grip.in_body) end += yielded;
+  const Vector3 compliance =
+      pose.orientation.conjugate() * (std::min(step / kComplianceTime, 1.0) * needless);
+  for (Vector3& end : grip.in_body) end += compliance;
 }
 
 /// Leaves the joints of a linkage to the fingers: the springs resist only the mean motion of the links that
@@ -440,12 +449,11 @@ double GraspAssist::offset(const SimulationState& state, const Grip& grip) const
   return largest;
 }
 
-/// True if another hand has the object between both of its contact groups.
 bool GraspAssist::is_held_elsewhere(const SimulationState& state, const Grip& grip) const {
   return std::any_of(state.grips.begin(), state.grips.end(), [&](const Grip& other) {
     return other.hand != grip.hand && !other.released && !other.lost &&
            objects_.same_object(other.body, grip.body) &&
-           objects_.touching_sides(other, state.contacts).both();
+           objects_.touching_groups(other, state.contacts).both();
   });
 }
 
@@ -463,8 +471,11 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
   take_held_objects(true, fraction, state);
   const double until = seconds_ > 0.0 ? std::min(1.0, fraction + step / seconds_) : fraction;
   for (Grip& grip : state.grips) {
-    const bool touching = objects_.touching_sides(grip, state.contacts).both();
-    if (!touching && (has_left(state, grip) || is_held_elsewhere(state, grip))) {
+    const bool touching = objects_.touching_groups(grip, state.contacts).both();
+    const HandTrack& track = state.hands[grip.hand];
+    const bool present = !grip.lost && !track.appeared;
+    if (!touching && (has_left(state, grip) || is_held_elsewhere(state, grip) ||
+                      (present && is_open_at(fraction, track, grip)))) {
       grip.active = false;
       continue;
     }
@@ -472,11 +483,11 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
                                      !objects_.is_opposed(grip.hand, grip.body, grip.by_palm, state.contacts)
                                : grip.opened <= kMinOpening;
     if (!grip.active && (!lost || grip.released || grip.lost)) continue;
-    place(fraction, until, state.hands[grip.hand], grip);
+    place_springs(fraction, until, track, grip);
     leave_joints_free(step, state, grip);
-    if (grip.active) yield_to_contacts(step, state, grip);
+    if (grip.active) comply_with_contacts(step, state, grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;
-    if (opens_now(state.hands[grip.hand], seconds_, grip)) continue;
+    if (opens_faster_than(kMaxActivationSpeed, track, seconds_, grip)) continue;
     grip.active = true;
     for (std::size_t i = 0; i < kGripPoints; ++i)
       grip.in_body[i] = state.bodies[grip.body].pose.to_local(grip.point[i]);

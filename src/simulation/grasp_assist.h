@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "closing_hand.h"
 #include "grasp_objects.h"
 #include "mr_hand_interaction/simulation_state.h"
 #include "operators.h"
@@ -44,18 +43,18 @@ class GraspAssist {
   const std::vector<Pose>& poses_of(std::size_t slot, std::size_t body, const SimulationState& state) const;
   bool is_shown_in(std::size_t slot, std::size_t body, const SimulationState& state) const;
   bool is_buried(std::size_t slot, const SimulationState& state) const;
-  bool ends(const SimulationState& state, Grip& grip) const;
+  bool has_ended(const SimulationState& state, Grip& grip) const;
   bool resumes(const SimulationState& state, Grip& grip) const;
-  bool opens(const SimulationState& state, const TouchingSides& touching, Grip& grip) const;
+  bool has_opened(const SimulationState& state, const TouchingGroups& touching, Grip& grip) const;
   bool has_left(const SimulationState& state, const Grip& grip) const;
   bool is_held_elsewhere(const SimulationState& state, const Grip& grip) const;
   void follow(SimulationState& state, Grip& grip);
   std::vector<Grip>::iterator find_grip(std::size_t slot, std::size_t body, SimulationState& state) const;
   void take_held_objects(bool seen, double fraction, SimulationState& state) const;
-  void take(std::size_t slot, const OpposingContacts& opposing, double fraction,
+  void take(bool seen, std::size_t slot, const OpposingContacts& opposing, double fraction,
             SimulationState& state) const;
-  void place(double fraction, double until, const HandTrack& track, Grip& grip) const;
-  void yield_to_contacts(double step, const SimulationState& state, Grip& grip) const;
+  void place_springs(double fraction, double until, const HandTrack& track, Grip& grip) const;
+  void comply_with_contacts(double step, const SimulationState& state, Grip& grip) const;
   void leave_joints_free(double step, SimulationState& state, Grip& grip) const;
   double offset(const SimulationState& state, const Grip& grip) const;
   void set_compliance(const SimulationState& state, double step, Contact& contact) const;

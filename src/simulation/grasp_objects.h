@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "../collision/contact_finder.h"
 #include "mr_hand_interaction/configuration.h"
 #include "mr_hand_interaction/response/grip.h"
 #include "mr_hand_interaction/scene/scene.h"
@@ -15,6 +16,12 @@ namespace mrhi {
 /// the adjacent face.
 constexpr double kMaxOpposingCosine = -0.3;
 
+/// True for the capsules that fingers close against: the palm with its metacarpals, or the thumb.
+inline bool is_base(bool by_palm, int capsule) {
+  if (by_palm) return capsule == kPalm || bone_of(capsule) == 0;
+  return finger_of(capsule) == 0;
+}
+
 /// Opposing contacts of a hand that could hold an object between them. World.
 struct OpposingContacts {
   double depth = 0.0;             ///< of the deeper contact [m]
@@ -25,8 +32,8 @@ struct OpposingContacts {
   std::uint8_t fingers_mask = 0;  ///< a bit for each finger that opposes the base
 };
 
-/// Sides of a grip that touch its object.
-struct TouchingSides {
+/// Contact groups of a grip that touch its object.
+struct TouchingGroups {
   bool base = false, fingers = false;
 
   bool both() const { return base && fingers; }
@@ -57,8 +64,8 @@ class GraspObjects {
 
   /// True if all fingers that touch the object take part in the grip.
   bool only_fingers_of(const Grip& grip, const Contacts& contacts) const;
-  TouchingSides touching_sides(const Grip& grip, const Contacts& contacts) const;
-  /// True if contacts slip that carry more than half of the push of one of the grip's sides.
+  TouchingGroups touching_groups(const Grip& grip, const Contacts& contacts) const;
+  /// True if contacts slip that carry more than half of the normal force of one of the grip's groups.
   bool slips(const Grip& grip, const Contacts& contacts) const;
   /// True if the same hand, or with `by_any_hand` any hand, touches the same object on a face opposite to
   /// this contact's, or will soon: contacts begin 1 mm before the surface.
@@ -78,6 +85,40 @@ class GraspObjects {
   std::vector<double> friction_angle_;  // by body [rad]
   std::vector<GraspMode> modes_;        // of objects
   bool any_graspable_ = false;
+};
+
+/// Motion of the fingers about an object within a frame. Bodies are where the frame begins, the hand where it
+/// ends.
+class ClosingHand {
+ public:
+  using Object = GraspObjects::Object;
+  using Poses = std::vector<Pose>;
+
+  /// Keeps references.
+  ClosingHand(const Scene& scene, const ContactFinder& finder) : scene_(scene), finder_(finder) {}
+
+  /// True if a finger closes on the object, which lies between it and the thumb.
+  bool closes_on(const HandTrack& track, const Object& object, const Poses& poses) const;
+  /// Distance from the object to one contact group of a grip, its base or its fingers: negative inside,
+  /// limited [m].
+  double gap(const Hand& hand, bool by_palm, bool of_base, const Object& object, const Poses& poses) const;
+  /// True if the aperture between the finger's tip and its base is shrinking, as opposed to changing because
+  /// the hand moves.
+  static bool closes(const HandTrack& track, bool by_palm, int finger);
+
+ private:
+  /// The closest point of an object, and its body.
+  struct Nearest {
+    ClosestFeatures features;
+    int body;
+  };
+  bool closes_on(const HandTrack& track, int finger, const Object& object, const Poses& poses) const;
+  std::optional<Nearest> nearest(const Capsule& capsule, const Object& object, const Poses& poses,
+                                 double margin) const;
+  bool on_opposite_faces(const Hand& hand, int finger, const Object& object, const Poses& poses) const;
+
+  const Scene& scene_;
+  const ContactFinder& finder_;
 };
 
 }  // namespace mrhi

@@ -6,18 +6,18 @@
 #include <stdexcept>
 
 #include "../collision/overlap.h"
+#include "../scene/limits.h"
 #include "../text/text.h"
 #include "../tracking/hand_filter.h"
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "mr_hand_interaction/scene/scene.h"
-#include "scene_change.h"
 
 namespace mrhi {
 namespace {
 
 void check_in_bounds(const std::string& name, const Vector3& place, const Bounds& bounds) {
-  if ((place.array() >= bounds.min.array()).all() && (place.array() <= bounds.max.array()).all()) return;
+  if (bounds.contains(place)) return;
   throw std::invalid_argument("'" + name + "': " + text::vector(place) + " m is out of bounds; allowed: " +
                               text::vector(bounds.min) + " to " + text::vector(bounds.max));
 }
@@ -33,61 +33,43 @@ Pose checked_pose(const std::string& name, const Pose& pose, const Bounds& bound
   return checked;
 }
 
-/// This body, and those of the first `old` bodies that may touch it where they are now.
-Scene near_to(const Simulation& simulation, std::size_t old, const Body& last) {
-  const std::vector<Body>& bodies = simulation.scene().bodies;
-  Scene near;
-  for (std::size_t b = 0; b < old; ++b) {
-    const Pose& pose = simulation.state().bodies[b].pose;
-    const bool apart =
-        (pose.position - last.start.position).norm() > bodies[b].bounding_radius + last.bounding_radius;
-    if (apart || (bodies[b].fixed && last.fixed)) continue;
-    near.bodies.push_back(bodies[b]);
-    near.bodies.back().start = pose;
-  }
-  near.bodies.push_back(last);
-  return near;
-}
-
 /// Searches of meshes for one spawn: a few milliseconds, as frames wait meanwhile. Beyond them each pair
-/// still has kLeastOfPair: what they do not find, the contacts push apart.
-constexpr double kSearchesOfSpawn = 3000.0, kLeastOfPair = 30.0;
+/// still has kMinPairSearches: what they do not find, the contacts push apart.
+constexpr double kSearchesOfSpawn = 3000.0, kMinPairSearches = 30.0;
 
-/// Throws std::invalid_argument if the body overlaps one of the first `old` bodies. `left` are the searches
-/// that the spawn has left.
-void check_free_place(const Simulation& simulation, std::size_t old, const Body& body, double& left) {
-  const Scene near = near_to(simulation, old, body);
-  if (near.bodies.size() == 1) return;
-  const SceneGeometry geometry(near);
-  std::vector<BodyState> states;
-  for (const Body& one : near.bodies) states.push_back(start_state(one));
-  const std::size_t added = near.bodies.size() - 1;
-  for (std::size_t b = 0; b < added; ++b) {
-    SearchBudget budget;
-    budget.left = std::max(left, kLeastOfPair);
-    const Overlap found = overlap(near, geometry, states, added, b, budget);
-    left -= budget.spent;
-    if (found.is_allowed()) continue;
-    throw std::invalid_argument(
-        "'" + near.bodies[added].name + "' would be " +
-        (found.shares_walls ? "inside thin walls of '" : text::number(found.depth) + " m in '") +
-        near.bodies[b].name + "'; allowed: a place that is free");
+/// Throws std::invalid_argument if one of the bodies from `added` on overlaps one of those before.
+void check_free_places(const Simulation& simulation, std::size_t added) {
+  const Scene& scene = simulation.scene();
+  const std::vector<BodyState>& states = simulation.state().bodies;
+  const SceneGeometry geometry(scene);
+  double left = kSearchesOfSpawn;
+  for (std::size_t a = added; a < scene.bodies.size(); ++a) {
+    for (std::size_t b = 0; b < added; ++b) {
+      const Body &body = scene.bodies[a], &other = scene.bodies[b];
+      const double distance = (states[b].pose.position - states[a].pose.position).norm();
+      if (distance > body.bounding_radius + other.bounding_radius || (body.fixed && other.fixed)) continue;
+      SearchBudget budget;
+      budget.left = std::max(left, kMinPairSearches);
+      const Overlap found = overlap(scene, geometry, states, a, b, budget);
+      left -= budget.spent;
+      if (found.is_allowed()) continue;
+      throw std::invalid_argument(
+          "'" + body.name + "' would be " +
+          (found.shares_walls ? "inside thin walls of '" : text::number(found.depth) + " m in '") +
+          other.name + "'; allowed: a place that is free");
+    }
   }
-}
-
-std::string names_of(const Scene& scene, bool free_only) {
-  std::vector<std::string> names;
-  for (const Body& body : scene.bodies) {
-    if (!free_only || !body.fixed) names.push_back(body.name);
-  }
-  return text::joined_or_none(names);
 }
 
 std::size_t known_body(const Scene& scene, const std::string& name, bool free_only) {
-  const std::optional<int> found = find_body(scene, name);
-  if (found && !(free_only && scene.bodies[*found].fixed)) return static_cast<std::size_t>(*found);
+  std::vector<std::string> names;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (free_only && scene.bodies[b].fixed) continue;
+    if (scene.bodies[b].name == name) return b;
+    names.push_back(scene.bodies[b].name);
+  }
   throw std::invalid_argument("no object '" + text::one_line(name, 60) +
-                              "'; allowed: " + names_of(scene, free_only));
+                              "'; allowed: " + text::joined_or_none(names));
 }
 
 void check_no_joint(const Scene& scene, int body) {
@@ -100,7 +82,6 @@ void check_no_joint(const Scene& scene, int body) {
 
 const std::string kGrasp = "grasp/";  // prefix of parameters of single objects
 
-/// Throws ParameterError.
 std::size_t graspable_body(const std::string& name, const std::string& object, const Scene& scene) {
   const std::vector<std::string> known = graspable_bodies(scene);
   if (std::find(known.begin(), known.end(), object) != known.end())
@@ -110,7 +91,6 @@ std::size_t graspable_body(const std::string& name, const std::string& object, c
                        "' that can be grasped by itself; allowed: " + text::joined_or_none(known));
 }
 
-/// Throws ParameterError.
 void set_grasp(const std::string& name, const std::string& object, const std::string& value, Scene& scene) {
   Body& body = scene.bodies[graspable_body(name, object, scene)];
   const auto mode = grasp_mode(value);
@@ -118,6 +98,17 @@ void set_grasp(const std::string& name, const std::string& object, const std::st
     throw ParameterError("parameter '" + name + "': " + text::one_line(value, 60) +
                          " is not allowed; allowed: " + kGraspModes);
   body.grasp = *mode;
+}
+
+/// Sets the material of bodies that follow the parameters. Throws std::invalid_argument that names a body
+/// whose own values conflict with it.
+void set_default_material(const Material& material, Scene& scene) {
+  for (Body& body : scene.bodies) {
+    for (const MaterialField& field : material_fields())
+      if (!(body.own_material.*field.own)) body.material.*field.value = material.*field.value;
+    if (const auto conflict = material_conflict(body.material))
+      throw std::invalid_argument("body '" + body.name + "': " + *conflict);
+  }
 }
 
 bool same_filter(const Configuration& a, const Configuration& b) {
@@ -156,7 +147,7 @@ void LiveSimulation::set_parameters(const std::vector<std::pair<std::string, std
   } catch (const std::invalid_argument& error) {
     throw ParameterError(std::string("parameter 'material': ") + error.what());
   }
-  go_on_with(scene, configuration);
+  continue_with(scene, configuration);
 }
 
 std::string LiveSimulation::parameter(const std::string& name) const {
@@ -179,9 +170,7 @@ void LiveSimulation::add(const Scene& part) {
   for (const Body& body : part.bodies) check_in_bounds(body.name, body.start.position, scene.bounds);
   auto next = std::make_unique<Simulation>(std::move(scene), simulation_->configuration());
   next->go_on_from(*simulation_);
-  double left = kSearchesOfSpawn;
-  for (std::size_t b = old; b < next->scene().bodies.size(); ++b)
-    check_free_place(*next, old, next->scene().bodies[b], left);
+  check_free_places(*next, old);
   simulation_ = std::move(next);
 }
 
@@ -191,7 +180,7 @@ void LiveSimulation::remove(const std::string& name) {
   if (scene.bodies[body].is_operator)
     throw std::invalid_argument("'" + name + "' is an operator, who cannot be deleted; allowed: objects");
   remove_body(body, scene);
-  go_on_with(scene, simulation_->configuration());
+  continue_with(scene, simulation_->configuration());
 }
 
 std::vector<Event> LiveSimulation::events_if_removed(const std::string& name) const {
@@ -208,10 +197,11 @@ std::vector<Event> LiveSimulation::events_if_reset() const {
 std::vector<Event> LiveSimulation::events_if_left(const std::vector<std::size_t>& bodies) const {
   SimulationState state = simulation_->state();
   std::vector<Event> events;
-  for (const std::size_t body : bodies) {
-    const std::vector<Event> of_body = end_interactions_with(body, state);
-    events.insert(events.end(), of_body.begin(), of_body.end());
-  }
+  for (const std::size_t body : bodies)
+    for (std::size_t slot = 0; slot < state.hands.size(); ++slot)
+      end_interaction(
+          {state.time, EventKind::hover_end, static_cast<int>(body), state.hands[slot].current.id},
+          state.interactions[slot * state.bodies.size() + body], events);
   return events;
 }
 
@@ -259,7 +249,7 @@ void LiveSimulation::reset() {
   simulation_->set_state(state);
 }
 
-void LiveSimulation::go_on_with(const Scene& scene, const Configuration& configuration) {
+void LiveSimulation::continue_with(const Scene& scene, const Configuration& configuration) {
   auto next = std::make_unique<Simulation>(scene, configuration);
   next->go_on_from(*simulation_);
   if (!same_filter(configuration, simulation_->configuration())) {

@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "../response/impact.h"
+#include "../scene/limits.h"
 
 namespace mrhi {
 namespace {
+
+static_assert(body_limits::kMaxOperators == kMaxHands, "at most one operator for each hand");
 
 /// Largest departure of an operator's hands from their predicted path, at which neighbours are listed again
 /// [m]. 100 N move 80 kg by 0.04 mm within a frame at 120 Hz.
@@ -48,22 +51,15 @@ Operators::Operators(const Scene& scene)
   on_fixtures_.reserve(64 * kMaxHands);
 }
 
-const Operator& Operators::owner(std::size_t slot, const SimulationState& state) const {
-  return scene_.operators[state.hands[slot].current.id % scene_.operators.size()];
-}
-
 Pose Operators::frame(const Operator& op, const SimulationState& state) const {
   const auto body = static_cast<std::size_t>(op.body);
   return state.bodies[body].pose * scene_.bodies[body].link_in_body;
 }
 
-const CarrierMotion* Operators::carrier(std::size_t slot) const {
-  return none() ? nullptr : &carriers_[owners_[slot]];
-}
-
 Pose Operators::in_hands_frame(std::size_t slot, std::size_t body, const SimulationState& state) const {
   if (none()) return state.bodies[body].pose;
-  return frame(owner(slot, state), state).inverse() * state.bodies[body].pose;
+  const Operator& owner = scene_.operators[state.hands[slot].current.id % scene_.operators.size()];
+  return frame(owner, state).inverse() * state.bodies[body].pose;
 }
 
 void Operators::end_frame(const SimulationState& state) {
@@ -91,10 +87,10 @@ void Operators::begin_frame(double seconds, const SimulationState& state) {
   }
   begin_step(seconds, state);
   for (std::size_t o = 0; o < carriers_.size(); ++o) start_[o] = frame(scene_.operators[o], state);
-  foresee(seconds);
+  predict(seconds);
 }
 
-void Operators::foresee(double seconds) {
+void Operators::predict(double seconds) {
   const double allowed = std::min(kMaxDeparture, kMaxDepartureRate * seconds * seconds);
   for (std::size_t o = 0; o < carriers_.size(); ++o) {
     courses_[o] = {carriers_[o].twist, 0.0, seconds, allowed};
@@ -115,8 +111,8 @@ bool Operators::begin_step(double left, const SimulationState& state) {
     const MovingBody moving(body, now, Vector3::Zero());
     carrier = {moving.rotation, moving.to_world(body.link_in_body.position), now.pose.position, moving.twist};
     Course& course = courses_[o];
-    const double rate = (carrier.twist.linear - course.foreseen.linear).norm() +
-                        kMaxReach * (carrier.twist.angular - course.foreseen.angular).norm();
+    const double rate = (carrier.twist.linear - course.predicted.linear).norm() +
+                        kMaxReach * (carrier.twist.angular - course.predicted.angular).norm();
     course.departed += rate * std::max(course.left - left, 0.0);
     course.left = left;
     on_course = on_course && course.departed + rate * left <= course.allowed;
@@ -175,11 +171,11 @@ Twist Operators::react(const ContactStep& step, int body) const {
     by_momentum = by_momentum && reacts_by_momentum(step, touched.body);
     if (!by_momentum) break;
     const BodyState& now = step.bodies[touched.body];
-    Vector3 given = now.linear_momentum - touched.linear_momentum;
+    Vector3 change = now.linear_momentum - touched.linear_momentum;
     if (step.changes.solved(touched.body))
-      given -= step.step * scene_.bodies[touched.body].mass * step.gravity;
-    impulse.linear += given;
-    impulse.angular += now.pose.position.cross(given) + now.angular_momentum - touched.angular_momentum;
+      change -= step.step * scene_.bodies[touched.body].mass * step.gravity;
+    impulse.linear += change;
+    impulse.angular += now.pose.position.cross(change) + now.angular_momentum - touched.angular_momentum;
   }
   const Vector3& centre = step.bodies[body].pose.position;
   if (by_momentum) return {-impulse.linear, centre.cross(impulse.linear) - impulse.angular};
@@ -263,9 +259,9 @@ void Operators::respond(ContactStep& step, const std::vector<char>& restrained) 
   for (std::size_t o = 0; o < scene_.operators.size(); ++o) {
     const int body = scene_.operators[o].body;
     BodyState& state = step.bodies[body];
-    const Twist given = react(step, body);
-    state.linear_momentum += given.linear;
-    state.angular_momentum += given.angular;
+    const Twist reaction = react(step, body);
+    state.linear_momentum += reaction.linear;
+    state.angular_momentum += reaction.angular;
     touch_fixtures(step, body);
     if (restrained[o] == 0) continue;
     state.linear_momentum.setZero();

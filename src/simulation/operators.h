@@ -22,16 +22,18 @@ class Operators {
   /// Once a frame of `seconds`, when the hands' next poses are known.
   void begin_frame(double seconds, const SimulationState& state);
   /// Every step, `left` [s] before the frame's end: the operators' motion as it starts. False if hands may
-  /// leave the places that carried() foresaw; foresee() is then due.
+  /// leave the places that carried() predicted; predict() is then due.
   bool begin_step(double left, const SimulationState& state);
   /// Predicts where carried hands may be in the next seconds of the frame, from the operators' present
   /// motion.
-  void foresee(double seconds);
+  void predict(double seconds);
   /// Predicted frame of a hand, for Neighbours; null for a hand that is tracked in world.
   const CarriedFrame* carried(std::size_t slot) const { return none() ? nullptr : &carried_[owners_[slot]]; }
 
   /// Motion of the operator of the hand in a slot; null for a hand that is tracked in world.
-  const CarrierMotion* carrier(std::size_t slot) const;
+  const CarrierMotion* carrier(std::size_t slot) const {
+    return none() ? nullptr : &carriers_[owners_[slot]];
+  }
   /// The bodies of hands' operators, by slot; null without operators.
   const std::array<int, kMaxHands>* bodies_of_hands() const { return none() ? nullptr : &bodies_of_hands_; }
   /// A body's pose in the frame in which a hand is tracked.
@@ -50,7 +52,6 @@ class Operators {
   void respond(ContactStep& step, const std::vector<char>& restrained);
 
  private:
-  const Operator& owner(std::size_t slot, const SimulationState& state) const;
   Pose frame(const Operator& op, const SimulationState& state) const;
   Twist react(const ContactStep& step, int body) const;
   void note_momenta(std::size_t body, const SimulationState& state);
@@ -71,7 +72,7 @@ class Operators {
 
   /// Departure of an operator's motion in a frame from its prediction.
   struct Course {
-    Twist foreseen;
+    Twist predicted;
     double departed = 0.0, left = 0.0;  // [m], [s]
     double allowed = 0.0;               // departure at which neighbours are listed again [m]
   };

@@ -137,7 +137,7 @@ void Simulation::Impl::advance_step(double fraction, double step) {
   if (!operators.none()) {
     const double left = frame_seconds() > 0.0 ? (1.0 - fraction) * frame_seconds() : step;
     if (!operators.begin_step(left, state)) {
-      operators.foresee(left);
+      operators.predict(left);
       list_near_hands();
     }
   }
@@ -175,11 +175,8 @@ void Simulation::Impl::advance_step(double fraction, double step) {
 
 void Simulation::Impl::keep_in_bounds() {
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
-    const Vector3& p = state.bodies[b].pose.position;
     const bool sound = is_finite(state.bodies[b]);
-    if (sound && (p.array() >= scene.bounds.min.array()).all() &&
-        (p.array() <= scene.bounds.max.array()).all())
-      continue;
+    if (sound && scene.bounds.contains(state.bodies[b].pose.position)) continue;
     const Body& body = scene.bodies[b];  // read late: in large scenes it is not in the cache
     if (body.fixed) continue;
     if (!sound) result.not_finite.push_back("object '" + body.name + "'");

@@ -27,7 +27,6 @@ struct FrameTransfer {
   double seconds = 0.0;               ///< time of the steps
 
   void clear() { contacts.clear(), assists.clear(), seconds = 0.0; }
-  /// Adds the transfer of a step of `step` seconds.
   void add(const SimulationState& after, double step);
 
  private:
@@ -58,7 +57,6 @@ struct Simulation::Impl {
   void report(Nanoseconds stamp);
   void find_final_contacts();
   void update_interactions();
-  /// Ends all interactions of a hand that is about to be lost.
   void end_interactions(std::size_t slot, Nanoseconds now);
   void render();
   const HandTrack& lagging_track(std::size_t slot, std::unique_ptr<HandTrack>& lagging);
@@ -109,5 +107,13 @@ struct Simulation::Impl {
 };
 
 bool is_finite(const BodyState& state);
+
+/// Interaction level of a hand and a body from their present contacts, or from their distance without
+/// contacts. A grasp needs two or more parts of the hand whose loads on the body largely balance; a floating
+/// linkage counts as one body. With hysteresis: a level of `before` may last with a larger distance or less
+/// balance.
+InteractionLevel seen_level(const Hand& hand, int slot, int body, const ContactFinder& finder,
+                            const Scene& scene, const Pose& body_pose, const std::vector<Contact>& contacts,
+                            InteractionLevel before);
 
 }  // namespace mrhi

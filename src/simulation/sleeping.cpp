@@ -73,8 +73,8 @@ bool Sleeping::still(int body, const SimulationState& state) const {
 bool Sleeping::count_rest(double step, SimulationState& state) const {
   bool any = false;
   for (BodyContact& contact : state.body_contacts) {
-    const bool rests = contact.depth > 0.0 && still(contact.key.a, state) && still(contact.key.b, state);
-    contact.still = rests ? contact.still + step : 0.0;
+    const bool at_rest = contact.depth > 0.0 && still(contact.key.a, state) && still(contact.key.b, state);
+    contact.still = at_rest ? contact.still + step : 0.0;
     any = any || contact.still >= kTiredTime;
   }
   for (std::size_t j = 0; j < scene_.joints.size(); ++j) {

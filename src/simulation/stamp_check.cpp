@@ -42,10 +42,10 @@ StampVerdict StampCheck::take(Nanoseconds stamp, Nanoseconds since, StampVerdict
   return verdict;
 }
 
-int StampCheck::note_stray(Nanoseconds stamp, Nanoseconds longest) {
+int StampCheck::note_stray(Nanoseconds stamp, Nanoseconds max_interval) {
   const bool same_side = (stray > last) == (stamp > last);
-  const bool goes_on = strays > 0 && same_side && stamp > stray && stamp - stray <= longest;
-  strays = goes_on ? strays + 1 : 1;
+  const bool continues = strays > 0 && same_side && stamp > stray && stamp - stray <= max_interval;
+  strays = continues ? strays + 1 : 1;
   stray = stamp;
   return strays;
 }

@@ -101,7 +101,7 @@ class Parts {
 
   /// Members that the hash omits: of a single step, or derived from others.
   template <class... Items>
-  void aside(Items&... items) {
+  void not_hashed(Items&... items) {
     if constexpr (!Visitor::kHashes) all(items...);
   }
   void stamp(Nanoseconds& stamp) {
@@ -147,7 +147,7 @@ class Parts {
   template <class Item>
   void one(std::optional<Item>& item) {
     bool has_value = item.has_value();
-    aside(has_value);
+    not_hashed(has_value);
     if (!has_value) item.reset();
     if (has_value && !item) item.emplace();
     if (has_value) one(*item);
@@ -183,9 +183,9 @@ class Parts {
     auto& [id, side, confidence, grab, pinch, palm, palm_width, wrist, capsules] = part;
     one(id);
     one_of(side, Side::right);
-    aside(confidence, grab, pinch);
+    not_hashed(confidence, grab, pinch);
     one(palm);
-    aside(palm_width);
+    not_hashed(palm_width);
     all(wrist, capsules);
   }
   void one(SampleHistory& part) {
@@ -245,14 +245,14 @@ class Parts {
   }
   void one(FilterChange& part) {
     auto& [from, memory, begin] = part;
-    aside(from);
+    not_hashed(from);
     stamp(begin);
     one(memory);
   }
   void one(HandPath& part) {
     auto& [start_bend, end_bend, longest_bend, velocity, differences, intervals, order, noise, energy,
            extrapolated] = part;
-    aside(start_bend, end_bend, longest_bend);  // of the previous frame
+    not_hashed(start_bend, end_bend, longest_bend);  // of the previous frame
     up_to(order, 3);
     if (Visitor::kHashes && order == 0) return;
     all(velocity, differences, intervals, noise, energy, extrapolated);
@@ -268,7 +268,7 @@ class Parts {
   }
   void one(ContactKey& part) {
     auto& [point, shape, capsule, hand, body] = part;
-    aside(point, shape, capsule, hand, body);
+    not_hashed(point, shape, capsule, hand, body);
     in_order(part);
   }
   void one(ContactMemory& part) {
@@ -277,7 +277,7 @@ class Parts {
     all(key, god_object, entry_normal, touched_from, axis_parameter, depth, twist, engaged);
     one_of(friction, Friction::slipping);
     all(struck, compliance, ignored);
-    aside(at_edge, force);
+    not_hashed(at_edge, force);
   }
   void one(Contact& c) {
     one(static_cast<ContactMemory&>(c));
@@ -290,7 +290,7 @@ class Parts {
   }
   void one(BodyContactKey& part) {
     auto& [a, b, shape_a, shape_b, feature] = part;
-    aside(a, b, shape_a, shape_b, feature);
+    not_hashed(a, b, shape_a, shape_b, feature);
     in_order(part);
   }
   void one(BodyContact& part) {
@@ -299,7 +299,7 @@ class Parts {
     all(key, anchor_a, anchor_b, depth);
     one_of(friction, Friction::slipping);
     all(struck, still, force);
-    aside(point, normal, arm_a, arm_b, friction_offset, stretch, material, share, first_touch, impulse);
+    not_hashed(point, normal, arm_a, arm_b, friction_offset, stretch, material, share, first_touch, impulse);
   }
   void one(PalmLag& part) {
     auto& [whole, frame] = part;
@@ -329,10 +329,10 @@ class Parts {
            released, lost, body_in_palm, closes, opened, pads, in_palm_before, in_palm, slips, in_hand,
            in_body, force, torque, point, velocity] = part;
     all(body, hand, by_palm, fingers, touch_aperture, mean_aperture, min_aperture, bond, active, released);
-    aside(lost);
+    not_hashed(lost);
     if (!Visitor::kHashes || lost) one(body_in_palm);
     all(pads, in_palm, in_hand, in_body);
-    aside(stiffness, closes, opened, in_palm_before, slips, force, torque, point, velocity);
+    not_hashed(stiffness, closes, opened, in_palm_before, slips, force, torque, point, velocity);
   }
   void one(Interaction& part) {
     auto& [level, agreed, shown_in] = part;
@@ -343,12 +343,12 @@ class Parts {
   void one(JointState& part) {
     auto& [position, anchor, pushed, effort, still, detent, at_limit, latched] = part;
     all(position, anchor, pushed, still, detent, at_limit, latched);
-    aside(effort);
+    not_hashed(effort);
   }
   void one(SimulationState& part) {
     auto& [started, time, last_frame, stamps, bodies, joints, asleep, restrained, hands, contacts,
            body_contacts, sleeping_contacts, offsets, mass_lags, grips, interactions] = part;
-    aside(started, time, stamps, asleep);
+    not_hashed(started, time, stamps, asleep);
     stamp(last_frame);
     all(bodies, joints, restrained);
     if constexpr (Visitor::kHashes) {

@@ -8,22 +8,22 @@
 
 namespace mrhi {
 
-void Given::refuse(const std::string& allowed) const {
+void OptionValue::refuse(const std::string& allowed) const {
   throw UsageError(option + " '" + text + "' is not allowed; allowed: " + allowed);
 }
 
-void Given::fail(const std::string& what) const {
+void OptionValue::fail(const std::string& what) const {
   throw UsageError(option + " " + text + ": " + what + "; allowed: " + option + " " + form);
 }
 
-double Given::number(double lowest, double highest) const {
+double OptionValue::number(double lowest, double highest) const {
   const auto value = text::to_number(text);
   if (!value || !(*value >= lowest && *value <= highest))
     refuse("a number from " + text::number(lowest) + " to " + text::number(highest));
   return *value;
 }
 
-long Given::whole(long lowest, long highest) const {
+long OptionValue::whole(long lowest, long highest) const {
   const auto value = text::to_number(text);
   if (!value || !(*value >= static_cast<double>(lowest) && *value <= static_cast<double>(highest)) ||
       *value != std::floor(*value))
@@ -31,18 +31,18 @@ long Given::whole(long lowest, long highest) const {
   return static_cast<long>(*value);
 }
 
-const std::string& Given::one_of(const std::vector<std::string>& names) const {
+const std::string& OptionValue::one_of(const std::vector<std::string>& names) const {
   if (std::find(names.begin(), names.end(), text) == names.end()) refuse(text::joined(names));
   return text;
 }
 
-std::pair<std::string, std::string> Given::setting() const {
+std::pair<std::string, std::string> OptionValue::setting() const {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) refuse("KEY=VALUE");
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-std::vector<double> Given::numbers(std::size_t first, std::size_t count) const {
+std::vector<double> OptionValue::numbers(std::size_t first, std::size_t count) const {
   const std::vector<std::string> fields = text::split(text);
   if (fields.size() != first + count)
     fail(std::to_string(fields.size()) + " fields instead of " + std::to_string(first + count));
@@ -56,7 +56,7 @@ std::vector<double> Given::numbers(std::size_t first, std::size_t count) const {
 }
 
 CommandLine& CommandLine::flag(const std::string& name, bool& on) {
-  options_.push_back({name, "", true, [&on](const Given&) { on = true; }});
+  options_.push_back({name, "", true, [&on](const OptionValue&) { on = true; }});
   return *this;
 }
 
@@ -66,7 +66,7 @@ CommandLine& CommandLine::once(const std::string& name, const std::string& form,
 }
 
 CommandLine& CommandLine::once(const std::string& name, const std::string& form, std::string& text) {
-  return once(name, form, [&text](const Given& given) { text = given.text; });
+  return once(name, form, [&text](const OptionValue& given) { text = given.text; });
 }
 
 CommandLine& CommandLine::each(const std::string& name, const std::string& form, const Take& take) {

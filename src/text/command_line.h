@@ -11,7 +11,7 @@ namespace mrhi {
 
 /// Value of an option on the command line, with conversions and error messages. Failed conversions throw
 /// UsageError.
-struct Given {
+struct OptionValue {
   std::string option, form, text;
 
   /// "OPTION 'TEXT' is not allowed; allowed: ..."
@@ -30,7 +30,7 @@ struct Given {
 /// The options of a program: for each its name, the form of its value, and its handler.
 class CommandLine {
  public:
-  using Take = std::function<void(const Given&)>;
+  using Take = std::function<void(const OptionValue&)>;
 
   CommandLine& flag(const std::string& name, bool& on);
   CommandLine& once(const std::string& name, const std::string& form, const Take& take);

@@ -41,20 +41,20 @@ std::string why_unreadable(const std::string& file) {
   return "";
 }
 
-std::optional<std::string> file_text(const std::string& file, std::size_t most) {
+std::optional<std::string> file_text(const std::string& file, std::size_t max_bytes) {
   if (!why_unreadable(file).empty()) return {};
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   std::ifstream stream(file, std::ios::binary);
   if (!stream || error) return {};
-  std::string text(static_cast<std::size_t>(std::min<std::uintmax_t>(size, most)), '\0');
+  std::string text(static_cast<std::size_t>(std::min<std::uintmax_t>(size, max_bytes)), '\0');
   stream.read(&text[0], static_cast<std::streamsize>(text.size()));
   if (stream.bad()) return {};
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;
 }
 
-FileLines::FileLines(const std::string& file) : file_(text::one_line(file)), room_(kMaxLineBytes + 1) {
+FileLines::FileLines(const std::string& file) : file_(text::one_line(file)), buffer_(kMaxLineBytes + 1) {
   const std::string why = why_unreadable(file);
   if (!why.empty()) throw FileError(file_ + ": " + why + "; allowed: a file that may be read");
   stream_.open(file, std::ios::binary);
@@ -62,13 +62,13 @@ FileLines::FileLines(const std::string& file) : file_(text::one_line(file)), roo
 
 bool FileLines::next(std::string& line) {
   ++number_;
-  stream_.getline(room_.data(), static_cast<std::streamsize>(room_.size()));
+  stream_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
   const auto taken = static_cast<std::size_t>(stream_.gcount());
-  if (stream_.fail() && taken + 1 >= room_.size())
+  if (stream_.fail() && taken + 1 >= buffer_.size())
     throw FileError(file_ + ":" + std::to_string(number_) + ": is longer than " +
                     std::to_string(kMaxLineBytes) + " bytes; allowed: at most that");
   if (stream_.fail()) return false;
-  line.assign(room_.data(), stream_.eof() ? taken : taken - 1);
+  line.assign(buffer_.data(), stream_.eof() ? taken : taken - 1);
   constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets write it
   if (number_ == 1 && line.compare(0, 3, kByteOrderMark) == 0) line.erase(0, 3);
   return true;

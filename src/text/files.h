@@ -26,8 +26,8 @@ bool is_file(const std::filesystem::path& path);
 /// writer, a device may have no end.
 std::string why_unreadable(const std::string& file);
 
-/// First `most` bytes of a regular file; empty if it cannot be read.
-std::optional<std::string> file_text(const std::string& file, std::size_t most);
+/// First `max_bytes` bytes of a regular file; empty if it cannot be read.
+std::optional<std::string> file_text(const std::string& file, std::size_t max_bytes);
 
 /// The lines of a regular file, without a byte order mark.
 class FileLines {
@@ -43,7 +43,7 @@ class FileLines {
  private:
   std::string file_;
   std::ifstream stream_;
-  std::vector<char> room_;
+  std::vector<char> buffer_;
   std::size_t number_ = 0;
 };
 

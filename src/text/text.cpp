@@ -77,7 +77,7 @@ std::vector<std::string> split(const std::string& text) {
   return fields;
 }
 
-std::string one_line(const std::string& text, std::size_t longest) {
+std::string one_line(const std::string& text, std::size_t max_bytes) {
   std::string line;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t length = utf8_length(text, at);
@@ -93,14 +93,14 @@ std::string one_line(const std::string& text, std::size_t longest) {
     line += length == 0 || control ? "?" : one;
   }
   if (!line.empty() && line.back() == ' ') line.pop_back();
-  if (line.size() <= longest) return line;
-  std::size_t end = longest;
+  if (line.size() <= max_bytes) return line;
+  std::size_t end = max_bytes;
   while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) --end;  // not within a character
   return line.substr(0, end) + "...";
 }
 
-std::string quoted(const std::string& name, std::size_t longest) {
-  return "'" + one_line(name, longest) + "'";
+std::string quoted(const std::string& name, std::size_t max_bytes) {
+  return "'" + one_line(name, max_bytes) + "'";
 }
 
 std::string in_lower_case(std::string text) {

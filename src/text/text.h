@@ -36,7 +36,6 @@ std::string joined_or_none(const Texts& texts) {
   return texts.empty() ? "none" : joined(texts);
 }
 
-/// Names of items that have a name each.
 template <typename Items>
 std::vector<std::string> names_of(const Items& items) {
   std::vector<std::string> names;
@@ -60,11 +59,11 @@ std::vector<std::string> words(const std::string& text);
 std::vector<std::string> split(const std::string& text);
 
 /// Replaces line breaks by spaces, and other control characters and bytes that are no UTF-8 by '?';
-/// truncates to `longest` bytes.
-std::string one_line(const std::string& text, std::size_t longest = 300);
+/// truncates to `max_bytes` bytes.
+std::string one_line(const std::string& text, std::size_t max_bytes = 300);
 
 /// The same in quotes, for a name in a message.
-std::string quoted(const std::string& name, std::size_t longest = 60);
+std::string quoted(const std::string& name, std::size_t max_bytes = 60);
 
 std::string in_lower_case(std::string text);  ///< of ASCII letters
 

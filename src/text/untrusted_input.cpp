@@ -19,7 +19,7 @@
 namespace mrhi {
 namespace {
 
-constexpr int kDeepest = 32;
+constexpr int kMaxXmlDepth = 32;
 constexpr std::size_t kMaxElements = 100'000;
 constexpr std::size_t kMaxAttributes = 64;  // per element: libraries compare each with all before it
 
@@ -54,7 +54,7 @@ class Tags {
     }
   }
 
-  std::size_t elements = 0, attributes = 0;  ///< of all tags, and the most of one
+  std::size_t elements = 0, attributes = 0;  ///< of all tags; the largest number of one
   int deepest = 0;
   bool declares = false;  ///< a document type
   bool strange = false;   ///< a '<' that begins nothing known
@@ -105,7 +105,7 @@ class Tags {
   int depth_ = 0;
 };
 
-constexpr char kDone = 'd', kFailed = 'f';
+constexpr char kResultMark = 'd', kErrorMark = 'f';
 
 // Sanitizers reserve terabytes of address space.
 #ifndef __has_feature  // clang's
@@ -119,7 +119,7 @@ constexpr bool kMemoryIsLimited = true;
 #endif
 
 /// Address space in use by this process.
-rlim_t size_of_this() {
+rlim_t own_address_space() {
   std::ifstream pages("/proc/self/statm");
   rlim_t size = 0;
   pages >> size;
@@ -133,11 +133,11 @@ void limit(Resource resource, rlim_t value) {
 }
 
 /// Suppresses a library's output when the child process dies.
-void be_silent() {
-  const int nowhere = open("/dev/null", O_WRONLY);
-  if (nowhere < 0) return;
-  dup2(nowhere, STDOUT_FILENO);
-  dup2(nowhere, STDERR_FILENO);
+void discard_output() {
+  const int null_device = open("/dev/null", O_WRONLY);
+  if (null_device < 0) return;
+  dup2(null_device, STDOUT_FILENO);
+  dup2(null_device, STDERR_FILENO);
 }
 
 void write_all(int to, const std::string& text) {
@@ -148,8 +148,8 @@ void write_all(int to, const std::string& text) {
   }
 }
 
-[[noreturn]] void be_child(int to, rlim_t memory, const ChildLimits& limits,
-                           const std::function<std::string()>& work) {
+[[noreturn]] void run_and_exit(int to, rlim_t memory, const ChildLimits& limits,
+                               const std::function<std::string()>& work) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT, SIGALRM}) std::signal(signal, SIG_DFL);
   itimerval time{};  // ends it by SIGALRM, also while it waits
   time.it_value.tv_sec = static_cast<time_t>(limits.seconds);
@@ -157,16 +157,16 @@ void write_all(int to, const std::string& text) {
       std::max<suseconds_t>(1, static_cast<suseconds_t>(1e6 * (limits.seconds - std::floor(limits.seconds))));
   setitimer(ITIMER_REAL, &time, nullptr);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  be_silent();
+  discard_output();
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)));
   if (kMemoryIsLimited) limit(RLIMIT_AS, memory);
   try {
-    write_all(to, kDone + work());
+    write_all(to, kResultMark + work());
   } catch (const std::bad_alloc&) {
-    write_all(to, std::string(1, kFailed) + "takes more memory than is allowed");
+    write_all(to, std::string(1, kErrorMark) + "takes more memory than is allowed");
   } catch (const std::exception& error) {
-    write_all(to, kFailed + std::string(error.what()));
+    write_all(to, kErrorMark + std::string(error.what()));
   }
   _exit(0);
 }
@@ -221,8 +221,9 @@ std::optional<std::string> xml_danger(const std::string& xml) {
   if (tags.declares) return "has a document type; allowed: none";
   if (tags.strange)
     return "has a '<' that begins nothing known; allowed: elements, comments, CDATA and <?xml ...?>";
-  if (tags.deepest > kDeepest)
-    return "elements are nested deeper than " + std::to_string(kDeepest) + " levels; allowed: at most that";
+  if (tags.deepest > kMaxXmlDepth)
+    return "elements are nested deeper than " + std::to_string(kMaxXmlDepth) +
+           " levels; allowed: at most that";
   if (tags.elements > kMaxElements)
     return std::to_string(tags.elements) + " elements; allowed: at most " + std::to_string(kMaxElements);
   if (tags.attributes > kMaxAttributes)
@@ -235,25 +236,25 @@ std::string run_in_child(const ChildLimits& limits, const std::function<std::str
                          const std::function<bool()>& is_cancelled) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("cannot be read: no pipe to be had");
-  const rlim_t memory = size_of_this() + limits.memory;
+  const rlim_t memory = own_address_space() + limits.memory;
   const pid_t child = fork();
   if (child == 0) {
     close(ends[0]);
-    be_child(ends[1], memory, limits, work);
+    run_and_exit(ends[1], memory, limits, work);
   }
   close(ends[1]);
-  const std::string answer = child < 0 ? "" : read_all(ends[0], limits, is_cancelled);
+  const std::string output = child < 0 ? "" : read_all(ends[0], limits, is_cancelled);
   close(ends[0]);
   if (child > 0) {
     kill(child, SIGKILL);  // finished, or to be ended
     while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
-  if (answer.empty() && is_cancelled && is_cancelled()) throw std::runtime_error("is cancelled");
-  if (answer.empty())
+  if (output.empty() && is_cancelled && is_cancelled()) throw std::runtime_error("is cancelled");
+  if (output.empty())
     throw std::runtime_error("takes more time or memory than is allowed, or cannot be read");
-  if (answer[0] == kDone) return answer.substr(1);
-  throw std::runtime_error(answer.substr(1));
+  if (output[0] == kResultMark) return output.substr(1);
+  throw std::runtime_error(output.substr(1));
 }
 
 }  // namespace mrhi

@@ -24,7 +24,7 @@ struct ChildLimits {
 
 /// Runs `work` in a child process and returns its result. Throws std::runtime_error with the text of its
 /// exception, or with the exceeded limit or the cause of its end. This process is not affected.
-/// `is_cancelled` is asked ten times a second; once it is true, the child is ended.
+/// `is_cancelled` is called ten times a second; once it returns true, the child is ended.
 std::string run_in_child(const ChildLimits& limits, const std::function<std::string()>& work,
                          const std::function<bool()>& is_cancelled = {});
 

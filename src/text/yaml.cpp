@@ -14,7 +14,7 @@ namespace mrhi {
 namespace {
 
 constexpr std::size_t kMaxBytes = 256 * 1024;
-constexpr int kDeepestYaml = 32;
+constexpr int kMaxYamlDepth = 32;
 
 /// Scans a document without building it.
 class Guard : public YAML::EventHandler {
@@ -41,9 +41,9 @@ class Guard : public YAML::EventHandler {
 
  private:
   void enter(const YAML::Mark& mark) {
-    if (++depth_ > kDeepestYaml)
+    if (++depth_ > kMaxYamlDepth)
       refuse(mark,
-             "is nested deeper than " + std::to_string(kDeepestYaml) + " levels; allowed: at most that");
+             "is nested deeper than " + std::to_string(kMaxYamlDepth) + " levels; allowed: at most that");
   }
   [[noreturn]] void refuse(const YAML::Mark& mark, const std::string& what) const {
     throw YamlError(yaml_place(source_, mark) + ": " + what);

@@ -22,7 +22,7 @@ class YamlError : public std::runtime_error {
 /// Throws YamlError.
 YAML::Node load_yaml_file(const std::string& file);
 
-/// The same from a text of at most `most` bytes; `source` is its name in messages.
+/// The same from a text of at most `max_bytes`; `source` is its name in messages.
 YAML::Node load_yaml(const std::string& source, const std::string& yaml, std::size_t max_bytes = 256 * 1024);
 
 /// yaml-cpp's message as one line with the place.

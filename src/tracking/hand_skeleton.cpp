@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kScale = 1.05;
 constexpr double kPalmWidth = 0.085;
-constexpr double kPalmShare = 0.68;  // fraction of the distance from the wrist to the middle of the knuckles
+constexpr double kPalmRatio = 0.68;  // fraction of the distance from the wrist to the middle of the knuckles
 
 /// Where a finger begins, and its limits [mm, degrees].
 struct Root {
@@ -55,16 +55,16 @@ HandSkeleton make_human_hand() {
   return hand;
 }
 
-float clamp_share(double value) {
+float clamped_ratio(double value) {
   return static_cast<float>(std::min(1.0, std::max(0.0, value)));
 }
 
 /// Approximates Leap's values: flexion of the fingers, and distance between thumb and index tip.
 void fill_strengths(const HandPosture& posture, HandJoints& hand) {
   const double bend = posture.block<2, 4>(kBaseFlexion, 1).sum() / 4.0;
-  hand.grab_strength = clamp_share((bend - 60.0 * kDegree) / (120.0 * kDegree));
+  hand.grab_strength = clamped_ratio((bend - 60.0 * kDegree) / (120.0 * kDegree));
   const double aperture = (*hand.joints[0][4] - *hand.joints[1][4]).norm();
-  hand.pinch_strength = clamp_share((0.080 - aperture) / 0.055);
+  hand.pinch_strength = clamped_ratio((0.080 - aperture) / 0.055);
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ HandJoints hand_joints(const HandSkeleton& skeleton, Side side, const Pose& wris
     hand.finger_width[finger] = static_cast<float>(2.0 * skeleton.fingers[finger].radius);
     if (finger > 0) knuckles += 0.25 * *hand.joints[finger][1];
   }
-  hand.palm_centre = wrist.position + kPalmShare * (knuckles - wrist.position);
+  hand.palm_centre = wrist.position + kPalmRatio * (knuckles - wrist.position);
   fill_strengths(posture, hand);
   return hand;
 }

@@ -40,7 +40,6 @@ std::vector<Link> make_links() {
 }
 const std::vector<Link> kLinks = make_links();
 
-/// A link whose ends are known.
 struct Measured {
   const Link* link;
   double length;  ///< [m]
@@ -121,10 +120,8 @@ bool is_shared(const HandJoints& hand, const Vector3& point) {
 /// True if a finger's joint is as near to the origin as to a wrist.
 bool is_near_origin(const HandJoints& hand) {
   constexpr double kMaxToWrist = 0.2;  // of the nearest joint, in large hands too [m]
-  for (const auto& joints : hand.joints)
-    if (std::any_of(joints.begin(), joints.end(),
-                    [](const Joint& j) { return j && j->norm() < kMaxToWrist; }))
-      return true;
+  for (std::size_t i = 1; i < kHandJoints; ++i)
+    if (joint(hand, i) && joint(hand, i)->norm() < kMaxToWrist) return true;
   return false;
 }
 

@@ -39,10 +39,10 @@ StampSteps::Verdict StampSteps::take(Nanoseconds stamp, const std::optional<Nano
   if (!last_) return accept(frame);
   const Nanoseconds since = frame.stamp - last_->stamp;
   const Nanoseconds passed = std::max<Nanoseconds>(0, frame.receipt - last_->receipt);
-  const Nanoseconds longest =
+  const Nanoseconds max_interval =
       std::max({StampCheck::kAhead, kMaxIntervals * interval_, passed + StampCheck::kAhead});
   const bool waited_less = frame.lead() <= lead_ + StampCheck::kAhead;
-  if (since > 0 && (since <= longest || waited_less)) return accept(frame);
+  if (since > 0 && (since <= max_interval || waited_less)) return accept(frame);
   const std::optional<Frame> before = off_;
   off_ = frame;
   Verdict verdict{stamp + correction_};
@@ -59,9 +59,9 @@ StampSteps::Verdict StampSteps::take(Nanoseconds stamp, const std::optional<Nano
   return verdict;
 }
 
-StampSteps::Verdict StampSteps::accept(const Frame& frame, bool anew) {
+StampSteps::Verdict StampSteps::accept(const Frame& frame, bool restarts) {
   const Nanoseconds passed = last_ ? std::max<Nanoseconds>(0, frame.receipt - last_->receipt) : 0;
-  lead_ = last_ && !anew ? std::max(lead_ - passed / kInverseDrift, frame.lead()) : frame.lead();
+  lead_ = last_ && !restarts ? std::max(lead_ - passed / kInverseDrift, frame.lead()) : frame.lead();
   interval_ = last_ && !off_ ? std::min(frame.stamp - last_->stamp, StampCheck::kBack) : 0;
   last_ = frame;
   off_.reset();
@@ -165,9 +165,9 @@ bool JointsInput::Stream::is_burst(Nanoseconds stamp) {
   constexpr Nanoseconds kMeanFrames = 16;
   const Nanoseconds since = stamp - newest;
   newest = stamp;
-  const bool goes_on = since > 0 && since <= StampCheck::kAhead;
-  if (goes_on) interval += interval > 0 ? (since - interval) / kMeanFrames : since;
-  if (goes_on && kMinFraction * (stamp - taken) < interval) return true;
+  const bool continues = since > 0 && since <= StampCheck::kAhead;
+  if (continues) interval += interval > 0 ? (since - interval) / kMeanFrames : since;
+  if (continues && kMinFraction * (stamp - taken) < interval) return true;
   taken = stamp;
   return false;
 }
@@ -259,10 +259,10 @@ HandMerger::HandMerger(std::size_t streams, Mode mode) : mode_(mode), streams_(s
   }
 }
 
-bool HandMerger::Stream::goes_on(Nanoseconds now) const {
+bool HandMerger::Stream::continues(Nanoseconds now) const {
   if (frames.empty()) return false;
-  const Nanoseconds longest = interval > 0 ? std::min(2 * interval, kMaxWait) : kMaxWait;
-  return now - frames.back().stamp <= longest;
+  const Nanoseconds max_interval = interval > 0 ? std::min(2 * interval, kMaxWait) : kMaxWait;
+  return now - frames.back().stamp <= max_interval;
 }
 
 std::vector<Hand> HandMerger::Stream::at(Nanoseconds stamp) const {
@@ -295,7 +295,7 @@ std::vector<HandFrame> HandMerger::take(std::size_t number, const HandFrame& fra
   if (leader_ == number) waiting_.push_back(frame);
   std::vector<HandFrame> complete;
   take_complete(complete);
-  if (leader_ != number && waiting_.empty() && !streams_[*leader_].goes_on(newest_)) {
+  if (leader_ != number && waiting_.empty() && !streams_[*leader_].continues(newest_)) {
     leader_ = number;
     waiting_.push_back(frame);
     take_complete(complete);
@@ -315,7 +315,7 @@ void HandMerger::take_complete(std::vector<HandFrame>& complete) {
 /// True if the other streams have reached this stamp, or have ended.
 bool HandMerger::is_complete(const HandFrame& leading) const {
   return std::all_of(streams_.begin(), streams_.end(), [&](const Stream& stream) {
-    return stream.frames.empty() || stream.frames.back().stamp >= leading.stamp || !stream.goes_on(newest_);
+    return stream.frames.empty() || stream.frames.back().stamp >= leading.stamp || !stream.continues(newest_);
   });
 }
 
@@ -349,7 +349,7 @@ HandFrame HandMerger::merged(const HandFrame& leading) {
 std::optional<Hand> HandMerger::fuse(FusedSide& side, Nanoseconds stamp,
                                      const std::vector<std::optional<Hand>>& seen) {
   const double passed = side.output ? to_seconds(stamp - side.stamp) : kTransition;
-  const bool goes_on = side.output && passed > 0.0 && passed <= kTransition;
+  const bool continues = side.output && passed > 0.0 && passed <= kTransition;
   std::optional<std::size_t> surest;
   for (std::size_t s = 0; s < seen.size(); ++s)
     if (seen[s] && (!surest || seen[s]->confidence > seen[*surest]->confidence)) surest = s;
@@ -367,8 +367,8 @@ std::optional<Hand> HandMerger::fuse(FusedSide& side, Nanoseconds stamp,
     const double confidence = agrees ? std::max(seen[s]->confidence, kMinConfidence) : 0.0;
     changed = changed || agrees != (side.weights[s] > 0.0);
     if (agrees && side.weights[s] > 0.0 && side.seen[s]) staying = s;
-    const double share = goes_on && side.weights[s] > 0.0 ? std::min(passed / kTransition, 1.0) : 1.0;
-    side.weights[s] = agrees ? side.weights[s] + share * (confidence - side.weights[s]) : 0.0;
+    const double rate = continues && side.weights[s] > 0.0 ? std::min(passed / kTransition, 1.0) : 1.0;
+    side.weights[s] = agrees ? side.weights[s] + rate * (confidence - side.weights[s]) : 0.0;
     if (!agrees) continue;
     total += side.weights[s];
     mean = mean ? blend(*mean, *seen[s], side.weights[s] / total) : *seen[s];
@@ -376,10 +376,10 @@ std::optional<Hand> HandMerger::fuse(FusedSide& side, Nanoseconds stamp,
   Hand hand = *mean;
   hand.id = 1 + static_cast<std::uint32_t>(index(hand.side));
   hand.confidence = seen[*surest]->confidence;
-  if (changed || !goes_on) {
+  if (changed || !continues) {
     side.jump = HandVelocity();
     side.jumped = stamp;
-    for (std::size_t p = 0; goes_on && staying && p < kHandPoints; ++p) {
+    for (std::size_t p = 0; continues && staying && p < kHandPoints; ++p) {
       const Hand &before = *side.seen[*staying], &now = *seen[*staying];
       if (!has_point(hand, p) || !has_point(*side.output, p) || !has_point(before, p) || !has_point(now, p))
         continue;
@@ -417,7 +417,7 @@ void HandPairs::Stream::note(Nanoseconds stamp) {
   last = stamp;
 }
 
-bool HandPairs::Stream::goes_on(Nanoseconds stamp) const {
+bool HandPairs::Stream::continues(Nanoseconds stamp) const {
   return interval > 0 && std::abs(stamp - last) <= std::min(2 * interval, kMaxInterval);
 }
 
@@ -442,7 +442,7 @@ std::optional<HandFrame> HandPairs::take(Side side, const HandFrame& frame) {
   }
   has_dropped_ = waiting_.has_value();
   waiting_.reset();
-  if (!streams_[1 - index(side)].goes_on(frame.stamp)) return frame;
+  if (!streams_[1 - index(side)].continues(frame.stamp)) return frame;
   waiting_ = frame;
   waiting_side_ = side;
   return std::nullopt;

@@ -36,7 +36,6 @@ std::size_t drop_placeholders(HandJoints& hand, bool wrist_is_origin = false);
 /// Drops joints that make a bone impossibly long, at most a third of those known. Returns how many.
 std::size_t drop_stray_joints(HandJoints& hand);
 
-/// Number of joints that a hand has.
 std::size_t known_joints(const HandJoints& hand);
 
 /// True if all coordinates of the known joints are finite.
@@ -103,7 +102,6 @@ class StampSteps {
         false;  ///< the stream's first frame alone was of another clock; nothing is corrected
   };
 
-  /// A frame's stamp, and its time of receipt if known.
   Verdict take(Nanoseconds stamp, const std::optional<Nanoseconds>& receipt);
 
   /// Correction of the stamps, 0 before the first step. Streams of one clock share it.
@@ -115,7 +113,7 @@ class StampSteps {
     Nanoseconds stamp, receipt;
     Nanoseconds lead() const { return stamp - receipt; }
   };
-  Verdict accept(const Frame& frame, bool anew = false);
+  Verdict accept(const Frame& frame, bool restarts = false);
 
   std::optional<Frame> last_;  // accepted, with its original stamp
   std::optional<Frame> off_;   // the frame before, if it was off

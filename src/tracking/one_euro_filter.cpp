@@ -16,11 +16,11 @@ double weight(double cutoff, double elapsed) {
 }
 
 /// Velocities of raw samples, low-passed: v <- v + alpha ((x - x_before) / T - v).
-void follow_velocity(const Hand& from, const Hand& to, double elapsed, double share, HandVelocity& velocity) {
+void follow_velocity(const Hand& from, const Hand& to, double elapsed, double gain, HandVelocity& velocity) {
   for (std::size_t point = 0; point < kHandPoints; ++point) {
     Vector3& v = velocity.points[point];
     if (has_point(from, point) && has_point(to, point)) {
-      v += share * ((hand_point(to, point) - hand_point(from, point)) / elapsed - v);
+      v += gain * ((hand_point(to, point) - hand_point(from, point)) / elapsed - v);
     } else {
       v.setZero();
     }

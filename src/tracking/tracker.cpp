@@ -155,9 +155,9 @@ void extend_path(double elapsed, HandTrack& track) {
   // The path arrived with a velocity that differs from the start of a smooth one. The fraction of the
   // difference that is kept limits the detour, 4/27 of T times it.
   auto start = numbers(path.start_bend), arrived = numbers(path.velocity);
-  const double goes_on = path.order > 0 ? 1.0 : 0.0;
+  const double known = path.order > 0 ? 1.0 : 0.0;
   extrapolated *= kept;
-  start = goes_on * (arrived - mean + extrapolated);
+  start = known * (arrived - mean + extrapolated);
   arrived = mean + extrapolated;
   const double detour = 4.0 / 27.0 * elapsed * longest_point(path.start_bend);
   const double allowed = kMaxOvershoot + kBendFraction * elapsed * path.extrapolated;
@@ -252,7 +252,7 @@ Hand filtered_through_change(const Hand& hand, Nanoseconds stamp, const Configur
 /// The tracked hand with the rotation of its fingers' bones in the palm limited to `speed` [rad/s] since
 /// `before`, over `elapsed` seconds. Bones keep their lengths, and joints stay connected as tracked. The
 /// limit applies from the first tracked bone after the metacarpal.
-Hand slowed(const Hand& before, const Hand& tracked, double speed, double elapsed) {
+Hand with_limited_joint_speed(const Hand& before, const Hand& tracked, double speed, double elapsed) {
   Hand hand = tracked;
   const Quaternion palm = tracked.palm.orientation * before.palm.orientation.conjugate();
   for (int finger = 0; finger < kFingers; ++finger) {
@@ -346,7 +346,8 @@ void follow(const Hand& hand, Nanoseconds stamp, double elapsed, const Configura
     if (stamp - track.rejoin.begin >= track.rejoin.duration) track.rejoin.duration = 0;
   }
   if (std::isfinite(configuration.hand_joint_speed))
-    track.current = slowed(track.previous, track.current, configuration.hand_joint_speed, elapsed);
+    track.current =
+        with_limited_joint_speed(track.previous, track.current, configuration.hand_joint_speed, elapsed);
   extend_path(elapsed, track);
 }
 

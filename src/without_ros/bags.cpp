@@ -13,8 +13,7 @@ OpenLog open_log(const ReplayArguments& arguments) {
   return {};
 }
 
-std::unique_ptr<Pictures> marker_bag(const std::string&, const std::optional<double>&,
-                                     const std::set<std::size_t>&) {
+ViewWriter marker_bag(const std::string&, const std::optional<double>&, const std::set<std::size_t>&) {
   throw UsageError("--markers, --film, --serve: this replay was built without ROS and writes no bags");
 }
 

@@ -24,7 +24,7 @@ void change(const std::string& yaml, const RecordedFiles& files, LiveSimulation&
   fuzzing::require(to_yaml(change_from_yaml(to_yaml(change), files)) == to_yaml(change),
                    "a change is the same again after it has been read");
   prepare(change, scene_options(simulation.simulation().configuration()));
-  make(change, simulation);
+  apply_change(change, simulation);
 }
 
 void replay(const std::vector<std::string>& parts) {

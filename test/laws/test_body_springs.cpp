@@ -27,7 +27,7 @@ class Rows {
     for (SpringContact& row : all) {
       const Vector3 n = vector(row.spring.normal), arm = vector(row.arm), tilt = vector(row.tilt);
       const Vector3 u = vector(row.drive) - v - w.cross(arm) - w.dot(tilt) * n;
-      row.spring.respond(triple(u), row.drive_spin - n.dot(w), renew_limits, row.response);
+      row.spring.evaluate(triple(u), row.drive_spin - n.dot(w), renew_limits, row.response);
       const Vector3 force = vector(row.response.force);
       sum.head<3>() += force;
       sum.tail<3>() += arm.cross(force) + force.dot(n) * tilt + row.response.torque * n;

@@ -41,7 +41,7 @@ class Touch {
     ContactStep step{scene_,         gravity_, kStep,    configuration, contacts_,
                      body_contacts_, bodies_,  changes_, grips_};
     make_spring(step, contact, spring);
-    spring.spring.respond(triple(Vector3::Zero()), 0.0, true, spring.response);
+    spring.spring.evaluate(triple(Vector3::Zero()), 0.0, true, spring.response);
     settle(step, spring, contact);
   }
   void settle_seed() { penetration_force(scene_.bodies[0], bodies_[0], 0.0, 10.0, contact); }

@@ -21,13 +21,13 @@ struct Program {
   CommandLine line(bool with_words = true) {
     CommandLine line;
     line.flag("--quick", quick).once("--output", "DIR", output);
-    line.once("--size", "M", [this](const Given& given) { size = given.number(-1.0, 2.5); });
-    line.once("--count", "N", [this](const Given& given) { count = given.whole(1, 10); });
-    line.once("--colour", "NAME", [this](const Given& given) { colour = given.one_of({"red", "blue"}); });
-    line.each("--set", "KEY=VALUE", [this](const Given& given) {
+    line.once("--size", "M", [this](const OptionValue& given) { size = given.number(-1.0, 2.5); });
+    line.once("--count", "N", [this](const OptionValue& given) { count = given.whole(1, 10); });
+    line.once("--colour", "NAME", [this](const OptionValue& given) { colour = given.one_of({"red", "blue"}); });
+    line.each("--set", "KEY=VALUE", [this](const OptionValue& given) {
       settings.push_back(given.setting().first + " is " + given.setting().second);
     });
-    if (with_words) line.words([this](const Given& given) { rest.push_back(given.text); });
+    if (with_words) line.words([this](const OptionValue& given) { rest.push_back(given.text); });
     return line;
   }
 

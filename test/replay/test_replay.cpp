@@ -194,14 +194,11 @@ TEST(Replay, objects_scenes_and_parameters_on_the_command_line_must_exist) {
 /// Ends with an error after some frames.
 struct BreakingSource : FrameSource {
   std::optional<SourceFrame> next() override {
-    if (count == 5) throw std::runtime_error("it broke");
+    if (position_ == 5) throw std::runtime_error("it broke");
     SourceFrame frame;
-    frame.frame = HandFrame{1'000'000'000 + 10'000'000 * static_cast<Nanoseconds>(count++), {}};
+    frame.frame = HandFrame{1'000'000'000 + 10'000'000 * static_cast<Nanoseconds>(position_++), {}};
     return frame;
   }
-  std::size_t position() const override { return count; }
-  std::size_t size() const override { return 100; }
-  std::size_t count = 0;
 };
 
 TEST(Replay, what_was_written_before_an_error_stays) {

@@ -22,17 +22,14 @@ constexpr double kRate = 100.0;
 
 class Entries : public LogSource {
  public:
-  explicit Entries(std::vector<LogEntry> entries) : entries_(std::move(entries)) {}
+  explicit Entries(std::vector<LogEntry> entries) : entries_(std::move(entries)) { size_ = entries_.size(); }
   std::optional<LogEntry> next() override {
     if (position_ == entries_.size()) return std::nullopt;
     return entries_[position_++];
   }
-  std::size_t position() const override { return position_; }
-  std::size_t size() const override { return entries_.size(); }
 
  private:
   std::vector<LogEntry> entries_;
-  std::size_t position_ = 0;
 };
 
 /// A live simulation, and what a recorder beside it gets.
@@ -80,7 +77,7 @@ class Live {
 
   void change(Change change) {
     prepare(change, scene_options(live_.simulation().configuration()));
-    make(change, live_);
+    apply_change(change, live_);
     note(change, live_, world_);
     ++sequence_;
     LogEntry& entry = add(LogEntry::Kind::change);

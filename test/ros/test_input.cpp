@@ -82,22 +82,22 @@ TEST(ClockLeaps, one_of_another_time_for_a_moment_is_not_followed) {
   constexpr Nanoseconds kLook = 33'000'000, kFar = 3'000'000'000'000;
   ClockLeaps leaps;
   Nanoseconds now = 1'000'000'000'000;
-  for (int i = 0; i < 3; ++i) EXPECT_FALSE(leaps.look(now += kLook));
-  EXPECT_TRUE(leaps.look(now + kFar));
-  for (int i = 0; i < 3; ++i) EXPECT_FALSE(leaps.look(now += kLook));  // it is back
-  EXPECT_TRUE(leaps.look(now + kFar));
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(leaps.detect(now += kLook));
+  EXPECT_TRUE(leaps.detect(now + kFar));
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(leaps.detect(now += kLook));  // it is back
+  EXPECT_TRUE(leaps.detect(now + kFar));
 }
 
 TEST(ClockLeaps, one_that_is_still_there_is_followed_and_so_is_a_fast_one) {
   constexpr Nanoseconds kLook = 33'000'000, kFar = 3'000'000'000'000;
   ClockLeaps leaps;
   Nanoseconds now = 1'000'000'000'000;
-  for (int i = 0; i < 3; ++i) EXPECT_FALSE(leaps.look(now += kLook));
-  EXPECT_TRUE(leaps.look(now += kFar));
-  EXPECT_FALSE(leaps.look(now));  // a clock that stands
-  EXPECT_FALSE(leaps.look(now += kLook));
-  EXPECT_TRUE(leaps.look(now += 100 * kLook));  // a bag at a hundred times its speed
-  for (int i = 0; i < 5; ++i) EXPECT_FALSE(leaps.look(now += 100 * kLook));
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(leaps.detect(now += kLook));
+  EXPECT_TRUE(leaps.detect(now += kFar));
+  EXPECT_FALSE(leaps.detect(now));  // a clock that stands
+  EXPECT_FALSE(leaps.detect(now += kLook));
+  EXPECT_TRUE(leaps.detect(now += 100 * kLook));  // a bag at a hundred times its speed
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(leaps.detect(now += 100 * kLook));
 }
 
 TEST(LostFrames, gaps_in_a_publisher_s_numbers_are_counted) {

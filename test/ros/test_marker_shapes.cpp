@@ -118,7 +118,7 @@ TEST_F(MarkerShapes, two_parts_of_a_ring_are_the_whole) {
 
 struct DrawnHand {
   explicit DrawnHand(const Hand& hand, const Touching& touching = {}) {
-    MarkerLayer layer(array, std_msgs::Header(), "hand", 0.0);
+    MarkerLayer layer{array, std_msgs::Header(), "hand", 0.0};
     add_capsules(hand, touching, {color(0.5, 0.5, 0.5), color(1, 0, 0), 1.0}, 200, layer);
   }
   int count(int type) const {
@@ -192,7 +192,7 @@ struct Shaded {
     SimulationState state;
     for (const Body& body : scene.bodies) state.bodies.push_back(start_state(body));
     array.markers.clear();
-    MarkerLayer layer(array, std_msgs::Header(), "shadows", 0.0);
+    MarkerLayer layer{array, std_msgs::Header(), "shadows", 0.0};
     ShadowMarkers(scene, ground).add(state, result, true, layer);
     return array;
   }

@@ -124,7 +124,7 @@ TEST(TargetMarks, show_the_object_translucent_where_it_is_to_be_and_a_ring_that_
   std::size_t before = 0;
   for (const double progress : {0.0, 0.3, 1.0}) {
     MarkerArray array;
-    MarkerLayer layer(array, std_msgs::Header(), "targets", 0.0);
+    MarkerLayer layer{array, std_msgs::Header(), "targets", 0.0};
     add_target({body, pose, progress, false}, 5, layer);
     ASSERT_EQ(array.markers.size(), 2u);
     EXPECT_EQ(array.markers[0].id, 5);
@@ -145,7 +145,7 @@ TEST(TargetMarks, show_the_object_translucent_where_it_is_to_be_and_a_ring_that_
 TEST(TargetMarks, that_are_reached_have_another_colour) {
   const Body body = testing::ball_body(0.03, 0.1);
   MarkerArray array;
-  MarkerLayer layer(array, std_msgs::Header(), "targets", 0.0);
+  MarkerLayer layer{array, std_msgs::Header(), "targets", 0.0};
   add_target({body, Pose{}, 0.5, false}, 0, layer);
   add_target({body, Pose{}, 0.5, true}, 10, layer);
   EXPECT_NE(array.markers.front().color.b, array.markers[2].color.b);

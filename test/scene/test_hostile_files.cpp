@@ -133,6 +133,10 @@ TEST(HostileMesh, reads_regular_files_in_its_folder_only) {
     test::expect_words(error(buffer),
                        {"mesh 'in/part.gltf' names the file '", "in the mesh's folder; allowed"});
   test::expect_words(error("pipe.bin"), {"mesh 'in/part.gltf' names the file 'pipe.bin', which is no file"});
+  around.write("in/id_rsa", test::gltf_buffer());
+  std::filesystem::create_symlink("id_rsa", in + "key.bin");
+  for (const char* buffer : {"id_rsa", "key.bin"})
+    test::expect_words(error(buffer), {"names the file", "is no buffer; allowed: files that end in .bin"});
   std::filesystem::resize_file(in + "below/own.bin", (64u << 20) + 1);
   test::expect_words(error("below/own.bin"), {"names the file 'below/own.bin', which has 67108865 bytes"});
   test::expect_words(error("none.bin"), {"mesh 'in/part.gltf' cannot be read", "none.bin"});
@@ -186,16 +190,21 @@ TEST(HostileMesh, has_its_triangles_counted_with_the_other_meshes_of_the_scene) 
   test::expect_words(load_meshes({a, b}, no_time)[1].problem, {"more time than is allowed in all"});
 }
 
-// Colours are not used.
-TEST(HostileMesh, needs_no_materials_of_an_obj) {
+// Colours are not used. What is opened is published with the mesh.
+TEST(HostileMesh, opens_no_materials_of_an_obj) {
   const test::Folder folder;
   const std::string obj =
       "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\ng nothing\n";
   ASSERT_EQ(0, mkfifo((folder.path() + "/pipe.mtl").c_str(), 0600));
   folder.write("own.mtl", "newmtl a\nmap_Kd none.png\n");
-  for (const char* materials : {"own.mtl", "none.mtl", "../../etc/passwd", "pipe.mtl"}) {
-    folder.write("part.obj", "mtllib " + std::string(materials) + "\n" + obj);
-    EXPECT_EQ(mesh_error(folder, "part.obj"), "") << materials;
+  folder.write("key.bin", "secret");
+  for (const char* materials : {"own.mtl", "none.mtl", "../../etc/passwd", "pipe.mtl", "key.bin"}) {
+    // A line is left to assimp.
+    folder.write("part.obj", "mtllib " + std::string(materials) + "\n" + obj + "l 1 2\n");
+    MeshBudget budget;
+    const LoadedMesh mesh = load_meshes({{folder.path() + "/part.obj", Vector3::Ones()}}, budget)[0];
+    EXPECT_EQ(mesh.problem, "") << materials;
+    EXPECT_TRUE(mesh.files.empty()) << materials;
   }
 }
 

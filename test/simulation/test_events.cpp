@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "simulation/grasp.h"
+#include "simulation/simulation_impl.h"
 #include "support/fixtures.h"
 #include "synthetic/performance.h"
 #include "training/operator_trial.h"

@@ -15,6 +15,12 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
+/// Hands of points in the usual order of their number.
+JointsFrame hands_from_points(const TrackedPoints& tracked, Side side) {
+  const auto order = [](std::size_t size, const Vector3*) -> const JointOrder& { return *usual_order(size); };
+  return joints_from_points(tracked, side, order);
+}
+
 HandFrame sample_frame() {
   std::vector<std::string> defects;
   const Pose device{Vector3(0.1, 0.2, 0.3), Quaternion(0.7, 0.7, 0.1, -0.1).normalized()};
@@ -111,7 +117,7 @@ void expect_joints(const HandJoints& hand, const HandJoints& sent, bool metacarp
 
 TEST(TrackedPoints, TwentyOneJointsAreTheHandWithoutMetacarpalBases) {
   const HandJoints sent = sample_hand(Side::left);
-  const JointsFrame frame = joints_from_points(tracked_hand(sent, 21), Side::left);
+  const JointsFrame frame = hands_from_points(tracked_hand(sent, 21), Side::left);
   EXPECT_EQ(frame.stamp, 3000000005);
   ASSERT_EQ(frame.hands.size(), 1u);
   const HandJoints& hand = frame.hands[0];
@@ -126,17 +132,17 @@ TEST(TrackedPoints, TwentyOneJointsAreTheHandWithoutMetacarpalBases) {
 
 TEST(TrackedPoints, NoPointsIsAFrameWithNoHandAndOtherCountsAreRefused) {
   TrackedPoints message;
-  EXPECT_TRUE(joints_from_points(message, Side::right).hands.empty());
+  EXPECT_TRUE(hands_from_points(message, Side::right).hands.empty());
   for (std::size_t count : {1u, 20u, 22u, 27u, 41u, 46u, 63u}) {
     message.points.resize(count);
-    EXPECT_THROW(joints_from_points(message, Side::right), DecodeError);
+    EXPECT_THROW(hands_from_points(message, Side::right), DecodeError);
   }
 }
 
 TEST(TrackedPoints, TwentyFiveAndTwentySixJointsHaveTheMetacarpalBases) {
   const HandJoints sent = sample_hand(Side::right);
   for (std::size_t joints : {25u, 26u}) {
-    const JointsFrame frame = joints_from_points(tracked_hand(sent, joints), Side::right);
+    const JointsFrame frame = hands_from_points(tracked_hand(sent, joints), Side::right);
     ASSERT_EQ(frame.hands.size(), 1u);
     expect_joints(frame.hands[0], sent, true);
     const Hand completed = complete_hand(frame.hands[0], Pose()), whole = complete_hand(sent, Pose());
@@ -150,9 +156,9 @@ TEST(TrackedPoints, TwentyFiveAndTwentySixJointsHaveTheMetacarpalBases) {
 TEST(TrackedPoints, MetacarpalBasesStandInForAWristThatIsMissing) {
   const HandJoints sent = sample_hand(Side::left);
   TrackedPoints tracked = tracked_hand(sent, 25);
-  const Hand whole = complete_hand(joints_from_points(tracked, Side::left).hands.at(0), Pose());
+  const Hand whole = complete_hand(hands_from_points(tracked, Side::left).hands.at(0), Pose());
   tracked.points[0].setConstant(NAN);
-  const Hand hand = complete_hand(joints_from_points(tracked, Side::left).hands.at(0), Pose());
+  const Hand hand = complete_hand(hands_from_points(tracked, Side::left).hands.at(0), Pose());
   EXPECT_EQ(hand.palm.position, whole.palm.position);
   for (std::size_t i = 0; i < kCapsules; ++i) EXPECT_EQ(hand.capsules[i].start, whole.capsules[i].start);
   EXPECT_LT((hand.wrist - whole.wrist).norm(), 0.015);  // by the proportions of a mean hand
@@ -165,13 +171,13 @@ TEST(TrackedPoints, TwiceAsManyJointsAreLeftAndRight) {
     EXPECT_FALSE(has_both_hands(message));
     add_hand(sample_hand(Side::right), joints, message);
     EXPECT_TRUE(has_both_hands(message));
-    const JointsFrame frame = joints_from_points(message, Side::right);
+    const JointsFrame frame = hands_from_points(message, Side::right);
     ASSERT_EQ(frame.hands.size(), 2u);
     expect_joints(frame.hands[0], sample_hand(Side::left), joints != 21);
     expect_joints(frame.hands[1], sample_hand(Side::right), joints != 21);
     EXPECT_NE(frame.hands[0].id, frame.hands[1].id);
     for (std::size_t i = 0; i < joints; ++i) message.points[i].y() = NAN;
-    EXPECT_EQ(joints_from_points(message, Side::right).hands.size(), 1u);
+    EXPECT_EQ(hands_from_points(message, Side::right).hands.size(), 1u);
   }
 }
 
@@ -179,16 +185,16 @@ TEST(TrackedPoints, AJointThatIsNotFiniteIsMissingAndAHandOfNothingElseIsNotTher
   const HandJoints sent = sample_hand(Side::right);
   TrackedPoints message = tracked_hand(sent, 26);
   message.points[9].z() = NAN;  // the index finger's distal joint
-  const HandJoints hand = joints_from_points(message, Side::right).hands.at(0);
+  const HandJoints hand = hands_from_points(message, Side::right).hands.at(0);
   EXPECT_FALSE(hand.joints[1][3]);
   EXPECT_EQ(hand.joints[1][4], sent.joints[1][4]);
   EXPECT_EQ(defect(hand), "");
   EXPECT_FALSE(complete_hand(hand, Pose()).has(capsule_index(1, 3)));
   for (Vector3& point : message.points) point.x() = NAN;
-  EXPECT_TRUE(joints_from_points(message, Side::right).hands.empty());
+  EXPECT_TRUE(hands_from_points(message, Side::right).hands.empty());
   message = tracked_hand(sent, 21);
   message.points[4].x() = INFINITY;
-  EXPECT_FALSE(joints_from_points(message, Side::right).hands.at(0).joints[0][4]);
+  EXPECT_FALSE(hands_from_points(message, Side::right).hands.at(0).joints[0][4]);
 }
 
 TEST(TrackedPoints, EveryMessageSaysTheSame) {
@@ -229,7 +235,7 @@ TEST(TrackedPoints, AHandGivenOutIsTheHandTakenIn) {
   const geometry_msgs::PoseArray message = pose_array_message(hand, std_msgs::Header());
   ASSERT_EQ(message.poses.size(), 21u);
   const Hand again =
-      complete_hand(joints_from_points(tracked_points(message), Side::left).hands.at(0), Pose());
+      complete_hand(hands_from_points(tracked_points(message), Side::left).hands.at(0), Pose());
   for (int i = 0; i < kPhalanges; ++i) {
     if (bone_of(i) == 0) continue;
     const Capsule &a = hand.capsules[static_cast<std::size_t>(i)],

@@ -43,8 +43,7 @@ struct ReplayArguments {
   HandOptions hands;
 };
 
-/// Parses the arguments, without the program's name. Throws UsageError. Does not check that scene, objects
-/// and parameters exist.
+/// Parses the arguments after the program's name. Throws UsageError. Names need not exist.
 ReplayArguments parse_replay_arguments(const std::vector<std::string>& arguments);
 
 /// Text of --help.
@@ -54,8 +53,7 @@ const char* replay_help();
 /// command line, SceneError and ParameterError for files.
 Simulation prepare_simulation(const ReplayArguments& arguments);
 
-/// Runs the program. Throws UsageError, or std::exception with one line for bad data; files written so far
-/// stay.
+/// Runs the program. Throws UsageError, or std::exception with one line for bad data. Written files stay.
 void replay(const ReplayArguments& arguments);
 
 }  // namespace mrhi

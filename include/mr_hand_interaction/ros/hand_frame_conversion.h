@@ -42,8 +42,7 @@ std::string without_slash(const std::string& frame_id);
 /// Clamps to the range of a header's stamp.
 ros::Time to_ros_time(Nanoseconds stamp);
 Nanoseconds from_ros_time(const ros::Time& stamp);
-/// Difference of either sign [s]. A ros::Duration would throw beyond 2^31 s, which stamps or /clock may
-/// reach.
+/// Difference of either sign [s]. A ros::Duration would throw beyond 2^31 s, as of a leap of /clock.
 double seconds_between(const ros::Time& from, const ros::Time& to);
 
 }  // namespace mrhi

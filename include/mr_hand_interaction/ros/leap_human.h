@@ -40,8 +40,7 @@ struct LeapFrame {
 /// MD5 of each of the four published versions.
 std::vector<std::string> leap_versions();
 
-/// Reads a serialised leap_motion/Human of any of its four published versions, identified by `md5`. Throws
-/// DecodeError.
+/// Reads a serialised leap_motion/Human of any published version, by its `md5`. Throws DecodeError.
 LeapFrame read_leap(const std::string& md5, std::vector<std::uint8_t> bytes);
 
 /// Reads a serialised leap_motion_controller/Hand as published by casado-fdo/leap-motion-ros: one hand

@@ -3,10 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "mr_hand_interaction/integration/body_state.h"
 #include "mr_hand_interaction/scene/scene.h"
 
 namespace mrhi {
+
+struct BodyState;
+struct JointState;
 
 /// The scene with the present poses and velocities as start values. `bodies`, `joints`: one for each of the
 /// scene's. A joint beyond a limit is set to the limit.

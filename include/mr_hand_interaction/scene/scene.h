@@ -15,6 +15,10 @@ namespace mrhi {
 struct Bounds {
   Vector3 min{-1.5, -1.5, -1.0};
   Vector3 max{1.5, 1.5, 2.0};
+
+  bool contains(const Vector3& place) const {
+    return (place.array() >= min.array()).all() && (place.array() <= max.array()).all();
+  }
 };
 
 /// A mesh file used by a scene, or a file that it names, such as the buffer of a glTF.

@@ -35,7 +35,7 @@ class HandMerger {
     std::deque<HandFrame> frames;  ///< newest last
     Nanoseconds interval = 0;      ///< between the last two; 0: unknown
 
-    bool goes_on(Nanoseconds now) const;
+    bool continues(Nanoseconds now) const;
     /// Hands interpolated between the frames on both sides of the stamp.
     std::vector<Hand> at(Nanoseconds stamp) const;
   };
@@ -79,7 +79,7 @@ class HandPairs {
   struct Stream {
     Nanoseconds last = 0, interval = 0;  ///< interval 0: unknown
     void note(Nanoseconds stamp);
-    bool goes_on(Nanoseconds stamp) const;
+    bool continues(Nanoseconds stamp) const;
   };
   bool is_partner(Side side, Nanoseconds stamp) const;
 

@@ -38,8 +38,8 @@ using mr_hand_interaction::RenderedView;
 using mr_hand_interaction::SceneDescription;
 
 constexpr std::uint32_t kQueue = 10;
-constexpr double kEyeMoved = 1e-4;     // [m]
-const Rgb kSkin(0.91f, 0.73f, 0.62f);  // base of the skin's tone
+constexpr double kMinEyeMotion = 1e-4;  // [m]
+const Rgb kSkin(0.91f, 0.73f, 0.62f);   // base of the skin's tone
 
 QColor to_qt(const std_msgs::ColorRGBA& c) {
   return QColor::fromRgbF(c.r, c.g, c.b);
@@ -55,8 +55,7 @@ Rgb to_rgb(const rviz::ColorProperty& property) {
 
 }  // namespace
 
-/// Draws hands, objects and their contacts in rviz from messages: `scene` once, then `rendered_view`. Draws
-/// what Markers makes; skins are deformed and lit here.
+/// Draws `scene` and `rendered_view` in rviz: what Markers makes, and skins, which are lit here.
 class InteractionDisplay : public rviz::Display {
  public:
   InteractionDisplay() { add_properties(); }
@@ -66,12 +65,13 @@ class InteractionDisplay : public rviz::Display {
   void update(float, float) override {
     read_properties();
     if (frame_.empty() || !place_in_fixed_frame()) return;
-    if (hands_came_ != ros::SteadyTime() && (ros::SteadyTime::now() - hands_came_).toSec() > kPassing) {
+    if (hands_time_ != ros::SteadyTime() &&
+        (ros::SteadyTime::now() - hands_time_).toSec() > kTransientLifetime) {
       view_.remove_hands();
-      hands_came_ = ros::SteadyTime();
+      hands_time_ = ros::SteadyTime();
       changed_ = true;
     }
-    if ((eye() - drawn_from_).norm() > kEyeMoved) changed_ = true;
+    if ((eye() - drawn_eye_).norm() > kMinEyeMotion) changed_ = true;
     if (std::exchange(changed_, false)) draw();
     scene_->pin_status(camera());
   }
@@ -185,15 +185,14 @@ class InteractionDisplay : public rviz::Display {
     });
   }
 
-  static rviz::FloatProperty* add_number(rviz::Property* layer, const char* title, double value,
-                                         const char* description) {
-    auto* property = new rviz::FloatProperty(title, value, description, layer);
+  void add_number(rviz::Property* layer, const char* title, double PictureStyle::*number,
+                  const char* description) {
+    auto* property = new rviz::FloatProperty(title, PictureStyle().*number, description, layer);
     property->setMin(0.0f);
-    return property;
+    readers_.push_back([property, number](PictureStyle& style) { style.*number = property->getFloat(); });
   }
 
   void add_properties() {
-    const PictureStyle style;
     namespace_ = new rviz::StringProperty("Namespace", "", "In which scene and rendered_view are", this);
     unreliable_ = new rviz::BoolProperty("Unreliable", false,
                                          "Ask for UDP: on a slow network, late poses are dropped", this);
@@ -203,14 +202,14 @@ class InteractionDisplay : public rviz::Display {
     auto* ghost =
         add_layer("ghost", "Ghost", true, "The tracked hand, where it differs from the rendered one");
     add_colour(ghost, "Color", &PictureStyle::ghost);
-    const auto* from =
-        add_number(ghost, "From [m]", style.ghost_from, "Invisible where it is nearer to the rendered hand");
-    auto* alpha = add_number(ghost, "Alpha", style.ghost.a, "Maximum opacity");
+    add_number(ghost, "From [m]", &PictureStyle::ghost_from,
+               "Invisible where it is nearer to the rendered hand");
+    auto* alpha = new rviz::FloatProperty("Alpha", PictureStyle().ghost.a, "Maximum opacity", ghost);
+    alpha->setMin(0.0f);
     alpha->setMax(1.0f);
-    readers_.push_back([from, alpha](PictureStyle& read) {
-      read.ghost.a = alpha->getFloat();
-      read.ghost_full += from->getFloat() - read.ghost_from;
-      read.ghost_from = from->getFloat();
+    readers_.push_back([alpha](PictureStyle& style) {
+      style.ghost.a = alpha->getFloat();
+      style.ghost_full = style.ghost_from + PictureStyle().ghost_full - PictureStyle().ghost_from;
     });
     add_layer("objects", "Objects", true, "Free and jointed bodies");
     add_layer("fixtures", "Fixtures", true, "Immovable bodies");
@@ -222,18 +221,13 @@ class InteractionDisplay : public rviz::Display {
     auto* forces = add_layer("forces", "Forces", true, "An arrow behind each loaded finger");
     add_colour(forces, "Color", &PictureStyle::forces);
     add_colour(forces, "Assist", &PictureStyle::assist);
-    const auto* least =
-        add_number(forces, "Least [N]", style.least_force, "Smaller forces have no arrow and no number");
-    readers_.push_back([least](PictureStyle& read) { read.least_force = least->getFloat(); });
+    add_number(forces, "Least [N]", &PictureStyle::least_force, "Smaller forces have no arrow and no number");
     add_layer("newtons", "Newtons", false, "The forces as numbers");
     add_layer("share", "Share", false, "Friction utilisation: blue none, orange full");
     auto* impacts =
         add_layer("impacts", "Impacts", true, "A ring at each impact of a hand, which fades within 0.15 s");
     add_colour(impacts, "Color", &PictureStyle::impacts);
-    const auto* least_impulse =
-        add_number(impacts, "Least [N s]", style.least_impulse, "Smaller impacts have no ring");
-    readers_.push_back(
-        [least_impulse](PictureStyle& read) { read.least_impulse = least_impulse->getFloat(); });
+    add_number(impacts, "Least [N s]", &PictureStyle::least_impulse, "Smaller impacts have no ring");
     add_layer("shadows", "Shadows", true, "Vertically below hands and objects");
     add_layer("text", "Text", true, "Held objects, contact model and gravity");
     add_layer("capsules", "Capsules", false, "The rendered hand as simulated");
@@ -253,7 +247,7 @@ class InteractionDisplay : public rviz::Display {
     listen<RenderedView>("rendered_view", [this](const RenderedView& message) {
       view_.take(message);
       stamp_ = message.header.stamp;
-      hands_came_ = ros::SteadyTime::now();
+      hands_time_ = ros::SteadyTime::now();
       for (const ObjectState& object : message.objects) objects_[object.name] = object;
       if (markers_) markers_->note(view_.result(), stamp_);
     });
@@ -319,7 +313,7 @@ class InteractionDisplay : public rviz::Display {
   }
 
   void draw() {
-    drawn_from_ = eye();
+    drawn_eye_ = eye();
     const FrameResult& result = view_.result();
     if (markers_) {
       std_msgs::Header header;
@@ -347,9 +341,9 @@ class InteractionDisplay : public rviz::Display {
       if (i >= hands) continue;
       const RenderedHand& rendered = result.rendered[i];
       if (layers_["hand"]->getBool())
-        skins_[i]->draw(rendered, result, view_.state(), tone_, layers_["capsules"]->getBool(), drawn_from_);
+        skins_[i]->draw(rendered, result, view_.state(), tone_, layers_["capsules"]->getBool(), drawn_eye_);
       if (layers_["ghost"]->getBool())
-        ghosts_[i]->draw_ghost(rendered.hand, result.tracked[i], style, drawn_from_);
+        ghosts_[i]->draw_ghost(rendered.hand, result.tracked[i], style, drawn_eye_);
     }
   }
 
@@ -374,7 +368,7 @@ class InteractionDisplay : public rviz::Display {
   std::vector<ros::Subscriber> subscribers_;
   std::string frame_;
   ros::Time stamp_;             ///< of the last frame
-  ros::SteadyTime hands_came_;  ///< time of the last hands
+  ros::SteadyTime hands_time_;  ///< time of the last hands
   std::map<std::string, mr_hand_interaction::ObjectState> objects_;
   SceneView view_;
   std::unique_ptr<Markers> markers_;
@@ -382,7 +376,7 @@ class InteractionDisplay : public rviz::Display {
   std::vector<std::unique_ptr<SkinObject>> skins_, ghosts_;
   SkinTone tone_;
   visualization_msgs::MarkerArray array_;
-  Vector3 drawn_from_ = Vector3::Zero();  ///< position of the camera
+  Vector3 drawn_eye_ = Vector3::Zero();  ///< position of the camera
   bool changed_ = false;
 };
 

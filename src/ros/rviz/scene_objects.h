@@ -77,8 +77,7 @@ inline Ogre::MaterialPtr vertex_colour_material(bool blended) {
   return material;
 }
 
-/// Draws the markers made by Markers as rviz's own displays do, with a node for each namespace. The status
-/// text is in the lower left corner of the window.
+/// Draws the markers of Markers, with a node for each namespace, and the status text in a corner.
 class MarkerScene {
  public:
   /// `selection` makes the handler of a body's shapes, which are below the node.
@@ -221,15 +220,15 @@ class MarkerScene {
   std::set<std::string> missing_;
 };
 
-constexpr float kSheen = 0.10f, kSharpness = 14.0f;  // of the highlight (Blinn-Phong)
-constexpr float kEdge = 0.06f;                       // of the fine hairs at the outline
+constexpr float kSpecular = 0.10f, kShininess = 14.0f;  // of the highlight (Blinn-Phong)
+constexpr float kRimLight = 0.06f;                      // of the fine hairs at the outline
 
 /// Reflection of a skin towards the camera besides its colour.
 inline float sheen(const Eigen::Vector3f& normal, const Eigen::Vector3f& to_eye) {
   const Eigen::Vector3f half = (main_light() + to_eye).normalized();
   const float facing = std::clamp(normal.dot(to_eye), 0.0f, 1.0f);
-  return kSheen * std::pow(std::max(0.0f, normal.dot(half)), kSharpness) +
-         kEdge * (1.0f - facing) * (1.0f - facing) * (1.0f - facing);
+  return kSpecular * std::pow(std::max(0.0f, normal.dot(half)), kShininess) +
+         kRimLight * (1.0f - facing) * (1.0f - facing) * (1.0f - facing);
 }
 
 using SkinTriangles = std::vector<std::array<int, 3>>;
@@ -276,7 +275,7 @@ class FineSkin {
   SkinTriangles triangles_;
 };
 
-constexpr double kFineWithin = 0.6;  ///< distance from the camera at which facets would be seen [m]
+constexpr double kFineDistance = 0.6;  ///< distance from the camera at which facets would be seen [m]
 
 inline void add_vertex(const Vector3& place, const Rgb& c, float alpha, Ogre::ManualObject& object) {
   object.position(to_ogre(place));
@@ -315,14 +314,15 @@ class SkinObject {
       colours_[v] = (colours_[v] + sheen(surface_.normals[v].cast<float>(), to_eye)).min(1.0f);
     }
     static const FineSkin fine(skin_);
-    const bool near = (eye - rendered.hand.palm.position).norm() < kFineWithin;
+    const bool near = (eye - rendered.hand.palm.position).norm() < kFineDistance;
     if (glassy)  // clear of the capsules' surface
-      for (std::size_t v = 0; v < skin_.size(); ++v) surface_.vertices[v] += kClear * surface_.normals[v];
+      for (std::size_t v = 0; v < skin_.size(); ++v)
+        surface_.vertices[v] += kCapsuleClearance * surface_.normals[v];
     if (near) fine.add_middles(surface_, colours_);
     const SkinTriangles& triangles = near ? fine.triangles() : skin_.triangles();
     begin(glassy, triangles.size());
     for (std::size_t v = 0; v < colours_.size(); ++v)
-      add_vertex(surface_.vertices[v], colours_[v], glassy ? kGlassy : 1.0f, *object_);
+      add_vertex(surface_.vertices[v], colours_[v], glassy ? kGlassyAlpha : 1.0f, *object_);
     end(rendered.hand.side, triangles);
   }
 
@@ -345,8 +345,8 @@ class SkinObject {
   void hide() { object_->setVisible(false); }
 
  private:
-  static constexpr float kGlassy = 0.4f;    // opacity over capsules
-  static constexpr double kClear = 0.0012;  // [m]
+  static constexpr float kGlassyAlpha = 0.4f;          // opacity over capsules
+  static constexpr double kCapsuleClearance = 0.0012;  // [m]
 
   void begin(bool blended, std::size_t triangles) {
     object_->estimateVertexCount(triangles / 2 + 2);  // Euler's formula for a sphere

@@ -26,10 +26,10 @@ namespace {
 
 using Status = mr_hand_interaction::TrainingStatus;
 
-constexpr int kRefresh = 100;  // [ms]
-constexpr double kOld = 1.0;   // older messages are ignored [s]
+constexpr int kRefreshPeriod = 100;  // [ms]
+constexpr double kMaxAge = 1.0;      // of messages [s]
 const char* const kNode = "training_node/";
-const char* const kPauses = "pause";
+const char* const kPauseService = "pause";
 
 const std::vector<const char*> kPhaseNames{"ready", "running", "paused", "finished"};
 const std::vector<const char*> kStageNames{"manipulation", "maintenance", "release"};
@@ -39,15 +39,15 @@ const char* name_in(const std::vector<const char*>& names, std::size_t number) {
 }
 
 bool is_old(const ros::SteadyTime& time) {
-  return time.isZero() || (ros::SteadyTime::now() - time).toSec() > kOld;
+  return time.isZero() || (ros::SteadyTime::now() - time).toSec() > kMaxAge;
 }
 
 /// Returns an error, or an empty string.
-std::string ask(const std::string& service, bool pause) {
+std::string call_service(const std::string& service, bool pause) {
   std_srvs::SetBool set;
   std_srvs::Trigger trigger;
   set.request.data = pause;
-  const bool sets = service == kPauses;
+  const bool sets = service == kPauseService;
   if (!(sets ? ros::service::call(kNode + service, set) : ros::service::call(kNode + service, trigger)))
     return "training_node does not answer";
   const bool good = sets ? set.response.success : trigger.response.success;
@@ -56,8 +56,7 @@ std::string ask(const std::string& service, bool pause) {
 
 }  // namespace
 
-/// The experimenter's panel in rviz: participant, task and progress; next, pause, skip and repeat by the
-/// services of training_node. Runs in rviz's thread, except service calls, which may block.
+/// The experimenter's panel in rviz. It calls the services of training_node in a thread, as they may block.
 class TrainingPanel : public rviz::Panel {
  public:
   explicit TrainingPanel(QWidget* parent = nullptr) : rviz::Panel(parent), timer_(new QTimer(this)) {
@@ -70,7 +69,7 @@ class TrainingPanel : public rviz::Panel {
                              "drops", "grip", "tracking", "result"})
       form->addRow(what, add_line(what, "-"));
     row->addWidget(add_button("next", "Next", "next"));
-    row->addWidget(add_button("pause", "Pause", kPauses));
+    row->addWidget(add_button("pause", "Pause", kPauseService));
     row->addWidget(add_button("skip", "Skip", "skip"));
     row->addWidget(add_button("repeat", "Repeat", "repeat"));
     all->addWidget(add_line("answer", ""));
@@ -83,7 +82,7 @@ class TrainingPanel : public rviz::Panel {
                     node.subscribe("hand_frame", 10, &TrainingPanel::take_hands, this)};
     counted_ = ros::SteadyTime::now();
     connect(timer_, &QTimer::timeout, this, [this] { refresh(); });
-    timer_->start(kRefresh);
+    timer_->start(kRefreshPeriod);
     refresh();
   }
 
@@ -107,12 +106,12 @@ class TrainingPanel : public rviz::Panel {
 
   void take(const Status& status) {
     status_ = status;
-    told_ = ros::SteadyTime::now();
+    status_time_ = ros::SteadyTime::now();
   }
 
   void take_contacts(const mr_hand_interaction::ContactArray& message) {
     grip_ = grip_force(message, {status_.object});
-    touched_ = ros::SteadyTime::now();
+    contacts_time_ = ros::SteadyTime::now();
   }
 
   void take_hands(const mr_hand_interaction::HandFrame& frame) {
@@ -120,21 +119,21 @@ class TrainingPanel : public rviz::Panel {
     if (frame.hands.empty()) return;
     confidence_ = 0.0;
     for (const auto& hand : frame.hands) confidence_ = std::max<double>(confidence_, hand.confidence);
-    seen_ = ros::SteadyTime::now();
+    hands_time_ = ros::SteadyTime::now();
   }
 
   void refresh() {
     const ros::SteadyTime now = ros::SteadyTime::now();
-    if (const double passed = (now - counted_).toSec(); passed > kOld) {
+    if (const double passed = (now - counted_).toSec(); passed > kMaxAge) {
       rate_ = frames_ / passed;
       frames_ = 0;
       counted_ = now;
     }
-    const bool silent = is_old(told_);
+    const bool silent = is_old(status_time_);
     for (const auto& button : buttons_) button.second->setEnabled(!silent && !calling_.joinable());
     const auto show = [this](const char* name, const QString& text) { lines_[name]->setText(text); };
-    show("grip", is_old(touched_) ? "-" : QString("%1 N").arg(grip_, 0, 'f', 1));
-    show("tracking", is_old(seen_)
+    show("grip", is_old(contacts_time_) ? "-" : QString("%1 N").arg(grip_, 0, 'f', 1));
+    show("tracking", is_old(hands_time_)
                          ? "no hand"
                          : QString("confidence %1, %2 Hz").arg(confidence_, 0, 'f', 2).arg(rate_, 0, 'f', 0));
     if (silent) {
@@ -161,15 +160,15 @@ class TrainingPanel : public rviz::Panel {
   /// One call at a time: the buttons are disabled until it returns.
   void call(const std::string& service) {
     if (calling_.joinable()) return;
-    say(QString::fromStdString(service) + " ...");
+    show_answer(QString::fromStdString(service) + " ...");
     const bool pause = status_.phase != Status::PAUSED;
     calling_ = std::thread([this, service, pause] {
-      const QString wrong = QString::fromStdString(ask(service, pause));
+      const QString wrong = QString::fromStdString(call_service(service, pause));
       QMetaObject::invokeMethod(
           this,
           [this, service, wrong] {
             calling_.join();
-            say(wrong.isEmpty() ? QString::fromStdString(service) + ": done" : wrong);
+            show_answer(wrong.isEmpty() ? QString::fromStdString(service) + ": done" : wrong);
             refresh();
           },
           Qt::QueuedConnection);
@@ -177,16 +176,16 @@ class TrainingPanel : public rviz::Panel {
     refresh();
   }
 
-  void say(const QString& text) { lines_["answer"]->setText(text); }
+  void show_answer(const QString& text) { lines_["answer"]->setText(text); }
 
   std::map<std::string, QLabel*> lines_;
   std::map<std::string, QPushButton*> buttons_;
   mr_hand_interaction::TrainingStatus status_;
-  ros::SteadyTime told_, touched_, seen_;  ///< times of the last messages
-  double grip_ = 0.0;                      ///< on the trial's object: half the sum of the normal forces [N]
-  double confidence_ = 0.0;                ///< highest confidence of the visible hands
-  int frames_ = 0;                         ///< frames of hands since the last refresh
-  double rate_ = 0.0;                      ///< of these frames [Hz]
+  ros::SteadyTime status_time_, contacts_time_, hands_time_;  ///< of the last messages
+  double grip_ = 0.0;        ///< on the trial's object: half the sum of the normal forces [N]
+  double confidence_ = 0.0;  ///< highest confidence of the visible hands
+  int frames_ = 0;           ///< frames of hands since the last refresh
+  double rate_ = 0.0;        ///< of these frames [Hz]
   ros::SteadyTime counted_;
   std::vector<ros::Subscriber> subscribers_;
   std::thread calling_;
