@@ -40,28 +40,25 @@ double fastest_point(const MovingBody& moving) {
 
 /// Lower bound of the distance of a point from a shape [m]: its distance from the box about the shape, whose
 /// components are max(|x_i| - half_i, 0). Less than the true distance beside a round side.
-double distance_lower_bound(const Vector3& point, const ManifoldShape& shape, const Pose& in_body,
-                            const Pose& body) {
+double distance_lower_bound(const Vector3& point, const PlacedCollider& shape, const Pose& body) {
   if (!shape.prism) return 0.0;
-  const Vector3 local = in_body.to_local(body.to_local(point));
+  const Vector3 local = shape.pose.to_local(body.to_local(point));
   return (local.cwiseAbs() - shape.prism->half).cwiseMax(0.0).norm();
 }
 
 struct ShapePair {
   const MovingBody& a;
   const MovingBody& b;
-  const PlacedShape& placed_a;
-  const PlacedShape& placed_b;
-  const ManifoldShape& shape_a;
-  const ManifoldShape& shape_b;
+  const PlacedCollider& shape_a;
+  const PlacedCollider& shape_b;
   SearchBudget& budget;
 
   Manifold at(double time, double margin) const {
-    return body_manifold(shape_a, a.at(time) * placed_a.pose, shape_b, b.at(time) * placed_b.pose, margin,
+    return body_manifold(shape_a, a.at(time) * shape_a.pose, shape_b, b.at(time) * shape_b.pose, margin,
                          kAnyBreadth, &budget);
   }
   Manifold now(double margin, double least_breadth) const {
-    return body_manifold(shape_a, a.pose * placed_a.pose, shape_b, b.pose * placed_b.pose, margin,
+    return body_manifold(shape_a, a.pose * shape_a.pose, shape_b, b.pose * shape_b.pose, margin,
                          least_breadth, &budget);
   }
 };
@@ -96,11 +93,8 @@ std::optional<TimedManifold> find_manifold(const ShapePair& pair, double step, d
   return sweep_pair(pair, step, margin);
 }
 
-/// Moves the anchors to the point of friction and keeps their stretch, so that rolling stretches nothing.
-///
-/// xi = A - B without its part along n, from the two body-fixed points that stick to each other. Both are
-/// placed half of it to either side of the point of friction: A - B is still xi, but the anchors of a pair
-/// that rolls or turns are where it touches now, at the arms of its forces.
+/// Moves the anchors to the point of friction, half of their stretch xi = A - B to either side: xi stays, but
+/// the anchors of a pair that rolls or turns are where it touches now.
 void anchor(const MovingBody& a, const MovingBody& b, BodyContact& contact) {
   const Vector3 place = contact.point + contact.friction_offset;
   contact.anchor_a = a.pose.to_local(place + 0.5 * contact.stretch);
@@ -118,8 +112,8 @@ bool on_rim(const ShapePair& pair, const Vector3& normal, const std::array<Place
     return shape.prism && shape.prism->round &&
            std::abs((pose.orientation * Vector3::UnitZ()).dot(normal)) > kSameFace;
   };
-  if (!stands(pair.shape_a, pair.a.pose * pair.placed_a.pose) &&
-      !stands(pair.shape_b, pair.b.pose * pair.placed_b.pose))
+  if (!stands(pair.shape_a, pair.a.pose * pair.shape_a.pose) &&
+      !stands(pair.shape_b, pair.b.pose * pair.shape_b.pose))
     return false;
   Place middle{};
   for (const Place& place : places) middle = {middle[0] + 0.25 * place[0], middle[1] + 0.25 * place[1]};
@@ -130,9 +124,9 @@ bool on_rim(const ShapePair& pair, const Vector3& normal, const std::array<Place
   return *farthest - *nearest < kRimTolerance * *farthest;
 }
 
-/// Draws the places of friction in towards the centre of the load, by spread_of(): sliding has the same force
-/// and the same moment as before, spinning that of a face that presses evenly. The load is that of the step
-/// before, or even.
+/// Moves the points of friction towards the centre of the load, by spread_of(): sliding has the same force
+/// and moment as before, spinning that of a face under an even load. The load is that of the last step, or
+/// even.
 void place_friction(const ShapePair& pair, const std::array<BodyContact*, 4>& region, int count) {
   if (count < 2) return;
   const Vector3& normal = region[0]->normal;
@@ -159,28 +153,16 @@ void place_friction(const ShapePair& pair, const std::array<BodyContact*, 4>& re
   }
 }
 
-/// Properties common to all points of a touch.
-struct Common {
-  Material material;
-  Vector3 centre_a, centre_b;  // when they touch
-};
-
-Common common_of(const ShapePair& pair, const TimedManifold& touch) {
-  const Material material = together(pair.a.body.material, pair.b.body.material);
-  if (touch.time <= 0.0) return {material, pair.a.pose.position, pair.b.pose.position};
-  return {material, pair.a.at(touch.time).position, pair.b.at(touch.time).position};
-}
-
 /// Stiffness of a strip of contact, as a fraction of the pair's.
 double stiffness_of(double breadth) {
   return std::clamp(breadth / kMinBreadth - 1.0, 0.0, 1.0);
 }
 
-/// For a pair that meets within the step, points are where it will touch, arms start from the centres at that
-/// time, and the depth is at most 0 until then. All points have equal fractions of the pair's stiffness.
-/// `contact` is that of the last step if it is `remembered`.
+/// For a pair that meets within the step, points and arms are those at the first touch, and the depth is at
+/// most 0 until then. All points have equal fractions of the pair's stiffness. `contact` is that of the last
+/// step if it is `remembered`.
 void make_contact(const BodyContactKey& key, const ShapePair& pair, const TimedManifold& touch,
-                  const Common& common, const ManifoldPoint& point, bool remembered, BodyContact& contact) {
+                  const ManifoldPoint& point, bool remembered, BodyContact& contact) {
   const bool lasting = remembered && contact.depth > 0.0 && point.depth > 0.0;
   contact.key = key;
   contact.point = point.point;
@@ -190,9 +172,10 @@ void make_contact(const BodyContactKey& key, const ShapePair& pair, const TimedM
   contact.first_touch = touch.time;
   if (!lasting) contact.force.setZero();
   contact.struck = contact.struck && point.depth > -kMinSeparation;
-  contact.material = common.material;
-  contact.arm_a = point.point - common.centre_a;
-  contact.arm_b = point.point - common.centre_b;
+  contact.material = together(pair.a.body.material, pair.b.body.material);
+  const double time = std::max(0.0, touch.time);
+  contact.arm_a = point.point - pair.a.at(time).position;
+  contact.arm_b = point.point - pair.b.at(time).position;
   contact.friction_offset.setZero();
   contact.stretch.setZero();
   if (lasting) {
@@ -203,8 +186,7 @@ void make_contact(const BodyContactKey& key, const ShapePair& pair, const TimedM
   }
 }
 
-/// Pairs come sorted, so that only the points of one need to be: each goes among those before it. What
-/// std::sort has for many, gcc 14 takes for a read beyond these few.
+/// Insertion sort: gcc 14 warns of a read out of bounds in std::sort of so few points.
 void sort_points(Manifold& manifold) {
   const auto before = [](const ManifoldPoint& x, const ManifoldPoint& y) { return x.feature < y.feature; };
   for (int count = 1; count < manifold.count; ++count) {
@@ -221,25 +203,25 @@ BodyContactFinder::BodyContactFinder(const Scene& scene, const SceneGeometry& ge
   found_.reserve(16 * scene.bodies.size());
 }
 
-/// Boxes along the world's axes with room for the step come before shapes: apart in one dimension is apart
-/// (separating axes). Contacts of a pair that sleeps are kept by simulation/sleeping.cpp meanwhile.
+/// World-aligned boxes with a margin for the step are tested before shapes. simulation/sleeping.cpp keeps the
+/// contacts of sleeping pairs.
 void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
                              const std::vector<char>& asleep, double step, double driven,
                              std::vector<BodyContact>& contacts) {
   found_.clear();
   work_ = 0.0;
   followed_ = followed_gap(neighbours, bodies, asleep, step, driven);
-  reached_ = 0;
-  reaches_.resize(bodies.size());
-  for (const int body : neighbours.paired()) reaches_[body].reset();
-  const auto reach = [&](std::size_t body) -> Reach& {
-    std::optional<Reach>& found = reaches_[body];
-    return found ? *found : found.emplace(reach_of(body, bodies[body], step));
+  memory_index_ = 0;
+  step_boxes_.resize(bodies.size());
+  for (const int body : neighbours.paired()) step_boxes_[body].reset();
+  const auto reach = [&](std::size_t body) -> StepBox& {
+    std::optional<StepBox>& found = step_boxes_[body];
+    return found ? *found : found.emplace(step_box(body, bodies[body], step));
   };
   for (const auto& [a, b] : neighbours.pairs()) {
     const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
     if (asleep[ib] && (asleep[ia] || scene_.bodies[ia].fixed)) continue;
-    Reach &of_a = reach(ia), &of_b = reach(ib);
+    StepBox &of_a = reach(ia), &of_b = reach(ib);
     const Vector3 apart = (of_a.centre - of_b.centre).cwiseAbs() - of_a.half - of_b.half;
     if (apart.maxCoeff() > 0.0) continue;
     if (!of_a.moving) of_a.moving.emplace(scene_.bodies[ia], bodies[ia], gravity_);
@@ -249,9 +231,9 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
   contacts.swap(found_);
 }
 
-/// No farther than one thing's blow may send another within the step. Where nothing moves, next to nothing:
-/// the bricks of a wall have no contact with those beside them. |w| = |I^-1 L| <= tr(I^-1) |L|, as the trace
-/// of a positive matrix is no less than its greatest eigenvalue: a bound without a product, in any frame.
+/// Largest displacement by an impact within the step. Where nothing moves it is almost 0: the bricks of a
+/// wall have no contact with those beside them. |w| = |I^-1 L| <= tr(I^-1) |L|, as the trace of a positive
+/// matrix is no less than its greatest eigenvalue.
 double BodyContactFinder::followed_gap(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
                                        const std::vector<char>& asleep, double step, double driven) const {
   double fastest = driven;
@@ -265,13 +247,13 @@ double BodyContactFinder::followed_gap(const Neighbours& neighbours, const std::
   return std::min(kMaxGap, kMinSeparation + kMaxImpactSpeedRatio * step * fastest);
 }
 
-/// The axis-aligned box that a body may touch another from within in this step. A box turned by R reaches
-/// sum_j |R_ij| half_j along world axis i (its support function); v h + g h^2 / 2 is its way in the step h.
-BodyContactFinder::Reach BodyContactFinder::reach_of(std::size_t index, const BodyState& state,
-                                                     double step) const {
+/// The axis-aligned box that contains a body through this step. A box rotated by R extends by sum_j |R_ij|
+/// half_j along world axis i (its support function); v h + g h^2 / 2 is its displacement in the step h.
+BodyContactFinder::StepBox BodyContactFinder::step_box(std::size_t index, const BodyState& state,
+                                                       double step) const {
   const Body& body = scene_.bodies[index];
-  const std::vector<ManifoldShape>& shapes = geometry_.shapes[index];
-  Reach reach;
+  const std::vector<PlacedCollider>& shapes = geometry_.colliders[index];
+  StepBox reach;
   reach.centre = state.pose.position;
   reach.half = Vector3::Constant(body.bounding_radius);
   reach.travel = 0.5 * followed_;
@@ -280,7 +262,7 @@ BodyContactFinder::Reach BodyContactFinder::reach_of(std::size_t index, const Bo
   }
   double turned = 0.0;
   if (shapes.size() == 1 && shapes[0].prism) {
-    const Pose pose = state.pose * body.shapes[0].pose;
+    const Pose pose = state.pose * shapes[0].pose;
     reach.centre = pose.position;
     reach.half = pose.orientation.toRotationMatrix().cwiseAbs() * shapes[0].prism->half;
     // No faster than the momentum about the axis of least inertia.
@@ -293,31 +275,28 @@ BodyContactFinder::Reach BodyContactFinder::reach_of(std::size_t index, const Bo
 /// The contact of the previous step, if there was one. Keys must be queried in order.
 const BodyContact* BodyContactFinder::memory_of(const BodyContactKey& key,
                                                 const std::vector<BodyContact>& before) {
-  while (reached_ < before.size() && before[reached_].key < key) ++reached_;
-  return reached_ < before.size() && before[reached_].key == key ? &before[reached_] : nullptr;
+  while (memory_index_ < before.size() && before[memory_index_].key < key) ++memory_index_;
+  return memory_index_ < before.size() && before[memory_index_].key == key ? &before[memory_index_] : nullptr;
 }
 
 /// The margin is the distance that the two can close in the step; pairs farther apart have no manifold.
 void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
                                   const std::vector<BodyContact>& before) {
-  const double travel = reaches_[ia]->travel + reaches_[ib]->travel;
-  const MovingBody &a = *reaches_[ia]->moving, &b = *reaches_[ib]->moving;
+  const double travel = step_boxes_[ia]->travel + step_boxes_[ib]->travel;
+  const MovingBody &a = *step_boxes_[ia]->moving, &b = *step_boxes_[ib]->moving;
   const double turned = fastest_point(a) * step, margin = travel + turned + fastest_point(b) * step;
   const double within =
       b.body.bounding_radius + travel + turned;  // of b's centre: its own turning is in the ball
-  for (std::size_t i = 0; i < a.body.shapes.size(); ++i) {
-    const double away =
-        distance_lower_bound(b.pose.position, geometry_.shapes[ia][i], a.body.shapes[i].pose, a.pose);
-    if (away > within) continue;
-    for (std::size_t j = 0; j < b.body.shapes.size(); ++j) {
+  const std::vector<PlacedCollider>&of_a = geometry_.colliders[ia], &of_b = geometry_.colliders[ib];
+  for (std::size_t i = 0; i < of_a.size(); ++i) {
+    if (distance_lower_bound(b.pose.position, of_a[i], a.pose) > within) continue;
+    for (std::size_t j = 0; j < of_b.size(); ++j) {
       SearchBudget budget = SearchBudget::after(work_);
-      const ShapePair pair{
-          a, b, a.body.shapes[i], b.body.shapes[j], geometry_.shapes[ia][i], geometry_.shapes[ib][j], budget};
+      const ShapePair pair{a, b, of_a[i], of_b[j], budget};
       auto touch = find_manifold(pair, step, followed_, margin);
       work_ += budget.spent;
       if (!touch) continue;
       sort_points(touch->manifold);
-      const Common common = common_of(pair, *touch);
       const std::size_t first = found_.size();
       std::array<std::uint8_t, 4 * Manifold::kMaxRegions> regions{};  // of the contacts from `first` on
       for (const ManifoldPoint& point : touch->manifold) {
@@ -330,7 +309,7 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
         } else {
           found_.emplace_back();
         }
-        make_contact(key, pair, *touch, common, point, memory != nullptr, found_.back());
+        make_contact(key, pair, *touch, point, memory != nullptr, found_.back());
         regions[found_.size() - 1 - first] = point.region;
       }
       for (int region = 0; region < Manifold::kMaxRegions; ++region) {

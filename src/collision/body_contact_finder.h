@@ -16,8 +16,8 @@ class BodyContactFinder {
   /// Keeps references.
   BodyContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity);
 
-  /// Every step: replaces `contacts` (sorted by key) by those of now, but for bodies that are `asleep`.
-  /// Contacts that last keep their memory. By no more than `driven` may hands change a body's velocity within
+  /// Every step: replaces `contacts` (sorted by key) by the present ones, except between bodies that are
+  /// `asleep`. Lasting contacts keep their memory. `driven`: largest change of a body's velocity by hands in
   /// the step [m/s].
   void find(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
             const std::vector<char>& asleep, double step, double driven, std::vector<BodyContact>& contacts);
@@ -26,25 +26,25 @@ class BodyContactFinder {
   double work() const { return work_; }
 
  private:
-  struct Reach {
+  struct StepBox {
     Vector3 centre, half;              // of a box [m]
     double travel;                     // in the step, and half the gap from which contacts are followed [m]
     std::optional<MovingBody> moving;  // of a body that another's box overlaps
   };
   double followed_gap(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
                       const std::vector<char>& asleep, double step, double driven) const;
-  Reach reach_of(std::size_t index, const BodyState& state, double step) const;
+  StepBox step_box(std::size_t index, const BodyState& state, double step) const;
   const BodyContact* memory_of(const BodyContactKey& key, const std::vector<BodyContact>& before);
   void find_pair(std::size_t a, std::size_t b, double step, const std::vector<BodyContact>& before);
 
   const Scene& scene_;
   const SceneGeometry& geometry_;
   const Vector3 gravity_;
-  double work_ = 0.0;                          // so far in this step, in searches
-  double followed_ = 0.0;                      // gap from which contacts are followed in this step [m]
-  std::vector<std::optional<Reach>> reaches_;  // by body, of those with an awake neighbour
+  double work_ = 0.0;                               // so far in this step, in searches
+  double followed_ = 0.0;                           // gap from which contacts are followed in this step [m]
+  std::vector<std::optional<StepBox>> step_boxes_;  // by body, of those with an awake neighbour
   std::vector<BodyContact> found_;
-  std::size_t reached_ = 0;  // of the contacts before
+  std::size_t memory_index_ = 0;  // of the contacts before
 };
 
 }  // namespace mrhi

@@ -3,30 +3,39 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 #include "contact_region.h"
-#include "scene_geometry.h"
+#include "flat_part.h"
 
 namespace mrhi {
 namespace {
+
+/// Calls `of_mesh` for a mesh, `of_other` for any other shape, which answers by itself.
+template <typename OfMesh, typename OfOther>
+auto by_kind(const Shape& shape, const OfMesh& of_mesh, const OfOther& of_other) {
+  return std::visit(
+      [&](const auto& typed) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(typed)>, Mesh>) {
+          return of_mesh();
+        } else {
+          return of_other(typed);
+        }
+      },
+      shape);
+}
 
 double length(const Capsule& core) {
   return (core.end - core.start).norm();
 }
 
-/// Each kind of pair is computed one way round: the longer of two cores, the round one of two prisms, and a
-/// mesh come first. Computed the other way round a manifold's normal turns; its points, midway between the
-/// surfaces, and their depths are the same.
+/// Each kind of pair is computed in one order: the longer of two cores, the round one of two prisms, and a
+/// mesh come first. In the other order only the normal changes its sign.
 bool comes_first(const ManifoldShape& a, const ManifoldShape& b) {
   if (a.core && b.core) return length(*a.core) >= length(*b.core);
   if (a.core || b.core) return a.core.has_value();
   if (a.prism && b.prism) return a.prism->round || !b.prism->round;
   return a.mesh != nullptr || b.mesh == nullptr;
-}
-
-AxisSpan span_on(const ManifoldShape& shape, const Capsule& capsule, const ClosestFeatures& features) {
-  return shape.mesh != nullptr ? shape.mesh->span(capsule, features)
-                               : contact_span(capsule, shape.shape, features);
 }
 
 /// Contact of a capsule along a shape, in the shape's frame.
@@ -40,22 +49,21 @@ struct Lying {
   }
 };
 
-/// A capsule that hangs over an edge is nearest there as soon as it tilts. A bar that tilts by less than
-/// kSameFace on the table's edge would get a normal between the face's and the edge's, and lose its second
-/// point. Therefore its centre, then its ends, are tested separately: the first that is over a face with
-/// nearly that normal defines the face, if the bar is as deep by it as by the edge.
+/// A capsule over an edge is nearest there as soon as it tilts: a bar that tilts by less than kSameFace on a
+/// table's edge would lose its second point. Therefore the first of its centre and ends over a face with
+/// nearly that normal defines the face, if the bar is as deep there as at the edge.
 Lying lying_on(const ManifoldShape& shape, const Capsule& capsule, const ClosestFeatures& features,
                double margin) {
-  const Lying found{features, span_on(shape, capsule, features)};
+  const Lying found{features, shape.span(capsule, features)};
   const double length = (capsule.end - capsule.start).norm();
   if (found.span.s0 < found.span.s1 || length == 0.0) return found;
-  constexpr double kRise = 0.05;  // of the axis above a face that it is within kSameFace of
+  constexpr double kMaxRise = 0.05;  // of the axis above a face that it is within kSameFace of
   for (const double s : {0.5, 0.0, 1.0}) {
     const Vector3 place = capsule.axis_point(s);
-    auto there = closest_on(shape, {place, place, capsule.radius}, margin + kRise * length);
+    auto there = shape.closest({place, place, capsule.radius}, margin + kMaxRise * length);
     if (!there || there->normal.dot(features.normal) < kSameFace) continue;
     there->axis_parameter = s;
-    const Lying lying{*there, span_on(shape, capsule, *there)};
+    const Lying lying{*there, shape.span(capsule, *there)};
     const double nearest = std::min(lying.gap(capsule, lying.span.s0), lying.gap(capsule, lying.span.s1));
     if (lying.span.s0 < lying.span.s1 && as_deep(-nearest, features.distance)) return lying;
   }
@@ -68,12 +76,12 @@ int name_of(double s) {
 
 }  // namespace
 
-/// A search from deeper than kDeep, or on the surface itself, takes more than others.
+/// A search from deeper than kDeepSearch, or on the surface itself, takes longer.
 double search_work(const ManifoldShape& shape, double distance) {
-  constexpr double kDeep = 0.002, kCoincides = 1e-9;  // [m]
+  constexpr double kDeepSearch = 0.002, kCoincidence = 1e-9;  // [m]
   constexpr double kClosedForm = 0.1;
   if (shape.mesh == nullptr) return kClosedForm;
-  const bool is_deep = distance < -kDeep || std::abs(distance) < kCoincides;
+  const bool is_deep = distance < -kDeepSearch || std::abs(distance) < kCoincidence;
   return is_deep ? shape.mesh->deep_search_cost(std::max(0.0, -distance)) : shape.mesh->search_cost();
 }
 
@@ -110,10 +118,20 @@ Manifold body_manifold(const ManifoldShape& a, const Pose& pose_a, const Manifol
   return mesh_manifold(a, pose_a, b, pose_b, margin, budget != nullptr ? *budget : own);
 }
 
-std::optional<ClosestFeatures> closest_on(const ManifoldShape& shape, const Capsule& capsule, double margin) {
-  const ClosestFeatures features = closest_on(shape.shape, shape.mesh, capsule, margin);
-  if (features.distance > margin) return std::nullopt;
-  return features;
+std::optional<ClosestFeatures> ManifoldShape::closest(const Capsule& capsule, double margin) const {
+  return by_kind(
+      shape, [&] { return mesh->closest(capsule, margin); },
+      [&](const auto& typed) -> std::optional<ClosestFeatures> {
+        const ClosestFeatures features = typed.closest(capsule, margin);
+        if (features.distance > margin) return std::nullopt;
+        return features;
+      });
+}
+
+AxisSpan contact_span(const Capsule& capsule, const Shape& shape, const ClosestFeatures& features) {
+  return by_kind(
+      shape, [&] { return at_point(features); },
+      [&](const auto& typed) { return typed.span(capsule, features); });
 }
 
 /// A point is midway between the two surfaces: at a(s) - (r + gap / 2) n, with the gap n.(a(s) - point) - r,
@@ -123,7 +141,7 @@ Manifold core_manifold(const Capsule& core, const Pose& pose_a, const ManifoldSh
   const auto to_b = [&](const Vector3& place) { return pose_b.to_local(pose_a * place); };
   const Capsule capsule{to_b(core.start), core.start == core.end ? to_b(core.start) : to_b(core.end),
                         core.radius};
-  const auto features = closest_on(b, capsule, margin);
+  const auto features = b.closest(capsule, margin);
   Manifold manifold;
   if (!features) return manifold;
   const Lying lying = lying_on(b, capsule, *features, margin);

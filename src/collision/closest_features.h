@@ -10,15 +10,10 @@
 namespace mrhi {
 
 /// Closest points of a capsule of the hand (body 1) and a shape (body 2), or of least overlap. In the frame
-/// of the arguments.
-///
-/// With a(s) the axis's point and r the capsule's radius:
+/// of the arguments. With a(s) the axis's point and r the capsule's radius:
 ///     a(s) = point + (distance + r) normal,   distance = normal.(a(s) - point) - r,
-/// except for a point that was clamped to the shape's border. The capsule's own surface point is a(s) - r
-/// normal. A capsule is its axis thickened, and is away from a shape by r less than the axis. With the axis
-/// outside, its nearest distance is > 0 and the normal is along the gap. With the axis inside, the gap's
-/// direction is the wrong way round, and the nearest surface of one point says nothing about the rest of the
-/// axis: then s is the point that comes out last, along the normal that needs the least.
+/// except for a point that was clamped to the shape's border. With the axis inside, s is the point that
+/// leaves the shape last along the shortest separating translation.
 struct ClosestFeatures {
   /// Signed: > 0 gap; < 0 overlap, -distance is the shortest translation that separates the two [m].
   double distance;
@@ -28,9 +23,8 @@ struct ClosestFeatures {
   int part = -1;          ///< of a mesh: its face, edge or corner, as MeshSurface numbers them
 };
 
-/// Closed forms; shape frame at its centre. Exact also when the capsule's axis is inside the shape.
-/// Where a segment lies along a face (to 1e-12 m), the middle of the stretch that touches is given. Where
-/// several directions are equally short, always the same one.
+/// Closed forms; shape frame at its centre. Exact also with the capsule's axis inside. For a segment along a
+/// face (to 1e-12 m) the middle of the touching interval. Of equally short directions always the same one.
 ClosestFeatures capsule_sphere(const Capsule& capsule, const Sphere& sphere);
 ClosestFeatures capsule_box(const Capsule& capsule, const Box& box);
 
@@ -58,8 +52,7 @@ struct MeetingFaces {
 MeetingFaces meeting_faces(const Shape& shape, const Vector3& normal);
 
 /// Distance from `point` along the unit vector `direction` to where this line leaves the shape, < 0 if that
-/// lies behind the point [m]. Shape's frame. Nothing if the line misses the shape, or for a mesh. A line is
-/// inside a convex shape for one interval in..out of t, x = point + t direction: this is the out.
+/// lies behind the point [m]. Shape's frame. Nothing if the line misses the shape, or for a mesh.
 inline std::optional<double> exit_distance(const Shape& shape, const Vector3& point,
                                            const Vector3& direction) {
   return std::visit([&](const auto& typed) { return typed.exit_distance(point, direction); }, shape);

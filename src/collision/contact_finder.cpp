@@ -22,8 +22,7 @@ ContactFinder::ContactFinder(const Scene& scene, const SceneGeometry& geometry, 
   factors_.reserve(64);
 }
 
-/// Bodies, capsules, shapes and points ascend, which is the keys' order for one hand. The body comes before
-/// the hand in a key, so that those of two hands interleave.
+/// Contacts of one hand are found in the keys' order; those of two hands interleave.
 void ContactFinder::find(const std::vector<HandMotion>& hands, const Neighbours& neighbours,
                          const std::vector<BodyState>& bodies, double step, std::vector<Contact>& contacts) {
   found_count_ = 0;
@@ -52,19 +51,18 @@ std::optional<ClosestFeatures> ContactFinder::closest(const Capsule& capsule, in
   const Capsule in_body{frame.rotation.transpose() * (capsule.start - frame.position),
                         frame.rotation.transpose() * (capsule.end - frame.position), capsule.radius};
   const Capsule in_shape = collider.to_shape(in_body);
-  ClosestFeatures features = collider.closest(in_shape, margin);
-  if (features.distance > margin) return std::nullopt;
-  if (span != nullptr) *span = collider.span(in_shape, features);
-  features = collider.to_body(features);
-  features.normal = frame.rotation * features.normal;
-  features.point = frame.rotation * features.point + frame.position;
+  auto features = collider.closest(in_shape, margin);
+  if (!features) return std::nullopt;
+  if (span != nullptr) *span = collider.span(in_shape, *features);
+  features = collider.to_body(*features);
+  features->normal = frame.rotation * features->normal;
+  features->point = frame.rotation * features->point + frame.position;
   return features;
 }
 
-/// No point of the body is faster than |v| + |w| R + |g| h / 2 on average through the step h, nor a phalanx
-/// than its faster end: what is farther than kMargin and the two speeds' sum times h cannot meet within the
-/// step. Clearances were measured as the pair was listed, for all of the hand's way in the frame; less what
-/// the body has moved since they still hold.
+/// No point of the body is faster than |v| + |w| R + |g| h / 2 on average through the step h, and no phalanx
+/// faster than its faster end. Clearances hold for the hand's path in the frame, less the body's displacement
+/// since they were measured.
 void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, const BodyState& state,
                               double step, const std::vector<Contact>& before) {
   const Body& body = scene_.bodies[near.body];
@@ -120,12 +118,13 @@ void ContactFinder::find_touch(const TouchingPair& pair, double step, double mar
                                const std::vector<Contact>& before) {
   const PlacedCollider& collider = geometry_.colliders[pair.body][pair.shape];
   const Capsule in_shape = collider.to_shape(pair.in_body);
-  ClosestFeatures features = collider.closest(in_shape, margin);
-  if (features.distance > margin) return;
-  if (features.distance > kMargin) {
-    const auto met = swept(pair, collider, step, margin);
-    if (!met) return;
-    features = *met;
+  std::optional<ClosestFeatures> found = collider.closest(in_shape, margin);
+  if (!found) return;
+  const bool is_apart = found->distance > kMargin;
+  if (is_apart) found = swept(pair, collider, step, margin);
+  if (!found) return;
+  ClosestFeatures& features = *found;
+  if (is_apart) {
     // The present distance from the point of the surface that will be met.
     features.distance =
         features.normal.dot(in_shape.axis_point(features.axis_parameter) - features.point) - in_shape.radius;
@@ -144,23 +143,23 @@ std::optional<ClosestFeatures> ContactFinder::swept(const TouchingPair& pair, co
     const Capsule then = pair.hand.capsule(pair.capsule, time);
     const Pose pose = moving.at(time);
     const Capsule in_body_then{pose.to_local(then.start), pose.to_local(then.end), then.radius};
-    const ClosestFeatures features = collider.closest(collider.to_shape(in_body_then), margin);
-    if (features.distance > margin) return std::nullopt;
-    const ClosestFeatures in_body = collider.to_body(features);
+    const auto features = collider.closest(collider.to_shape(in_body_then), margin);
+    if (!features) return std::nullopt;
+    const ClosestFeatures in_body = collider.to_body(*features);
     const Vector3 normal = pose.orientation * in_body.normal;
     const Vector3 hand_velocity =
         pair.hand.motion(pair.capsule, then).of_surface(in_body.axis_parameter, -then.radius * normal);
     const Vector3 relative = hand_velocity - moving.velocity(time, pose.orientation * in_body.point);
-    return Separation<ClosestFeatures>{features, features.distance, normal.dot(relative)};
+    return Separation<ClosestFeatures>{*features, features->distance, normal.dot(relative)};
   };
   const auto touch = first_touch<ClosestFeatures>(separation, step);
   if (!touch) return std::nullopt;
   return touch->features;
 }
 
-/// Contacts of the last step are sorted by key, and the capsules and shapes of one hand and body come in the
-/// same order: memory_ only moves on. Surfaces farther apart than kSeparation have no memory; what overlapped
-/// as it appeared may touch again from then on.
+/// The capsules and shapes of one hand and body come in the keys' order, so that memory_ only advances.
+/// Surfaces farther apart than kSeparation lose their memory, and may touch again if they overlapped when
+/// spawned.
 void ContactFinder::touch(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
                           const std::vector<Contact>& before) {
   const ContactKey key = pair.key(0);

@@ -35,11 +35,10 @@ struct TouchingPair {
   }
 };
 
-/// God objects of a pair (Zilles & Salisbury 1995, a point per touch): turns the closest features of now
-/// (body frame) into one contact, or two where the capsule lies along a face, and carries the memory of the
-/// pair's `count` contacts `before`, in the last step, over. A god object stays on the face that the phalanx
-/// entered by, however deep the phalanx goes, and moves with it only where friction lets it (response) or
-/// where the phalanx rolls. Writes the contacts to `now`, which holds two, and returns how many there are.
+/// God objects of a pair (Zilles & Salisbury 1995): turns the present closest features (body frame) into one
+/// contact, or two where the capsule lies along a face, which continue the `count` contacts `before` of the
+/// last step. A god object stays on the face of entry, however deep the phalanx goes, and moves along it only
+/// by slip (response) or rolling. Writes the contacts to `now`, which holds two, and returns their number.
 int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
                        const Contact* before, int count, Contact* now);
 
@@ -50,8 +49,7 @@ class ContactFinder {
   ContactFinder(const Scene& scene, const SceneGeometry& geometry, const Vector3& gravity,
                 const ContactConfiguration& refinements = {});
 
-  /// Every step: replaces `contacts` (sorted by key) by those of now. Contacts that last keep their memory;
-  /// see god_object.h.
+  /// Every step: replaces `contacts` (sorted by key) by the present ones. Lasting contacts keep their memory.
   void find(const std::vector<HandMotion>& hands, const Neighbours& neighbours,
             const std::vector<BodyState>& bodies, double step, std::vector<Contact>& contacts);
 
@@ -74,8 +72,7 @@ class ContactFinder {
                  const std::vector<Contact>& before);
   void share_between_shapes(std::size_t first);
   void find_touch(const TouchingPair& pair, double step, double margin, const std::vector<Contact>& before);
-  /// Closest features, in the shape's frame, at the time within the step at which the pair first touches, if
-  /// it does.
+  /// Closest features, in the shape's frame, at the pair's first touch within the step, if any.
   std::optional<ClosestFeatures> swept(const TouchingPair& pair, const PlacedCollider& collider, double step,
                                        double margin) const;
   void touch(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,

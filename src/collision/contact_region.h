@@ -16,9 +16,8 @@ constexpr double kSameFace = 0.99905;
 /// Faces of sizes nearer than this are as large.
 constexpr double kSameSize = 1e-6;
 
-/// A face's deepest point may differ so much from the depth along the best direction. By a thousandth, as
-/// kSameFace allows for, and by 3 um, so that what only just touches, where a thousandth is nothing, still
-/// lies on its face.
+/// True if a face's deepest point is as deep as the best direction requires: within a thousandth, as
+/// kSameFace allows for, and 3 um, so that a body that only just touches still lies on its face.
 inline bool as_deep(double deepest, double separation) {
   return deepest >= -separation - 1e-3 * std::abs(separation) - 3e-6;
 }
@@ -39,10 +38,8 @@ struct RegionPoint {
   int line;
 };
 
-/// The corners of such a region, a convex polygon, in their order.
-///
-/// `points` holds what clipping may make of two faces: a convex polygon of four corners gains at most one
-/// with each of four borders, and a rim counts with four points and two crossings with each edge or rim.
+/// The corners of such a region, a convex polygon, in their order. A polygon of four corners gains at most
+/// one with each of four borders; a rim counts with four points and two crossings with each edge or rim.
 struct ContactRegion {
   std::array<RegionPoint, 12> points;  ///< two rims have ten, a rim and a rectangle twelve
   int count = 0;
@@ -61,12 +58,11 @@ struct ContactRegion {
   double deepest() const;  ///< -1e300 if empty
 
   void remove_gaps(double margin);
-  /// Puts points in the order of their angle about the middle.
+  /// Orders points by their angle about the middle.
   void sort_around();
-  /// Leaves at most four points, the deepest among them, that keep the region large. Points within rounding
-  /// of each other's claims always lose in the same order.
+  /// Keeps at most four points, the deepest among them, that keep the region large.
   void reduce();
-  /// Drops points, but the deepest, that others span a line through.
+  /// Drops collinear points, but not the deepest.
   void straighten();
 
  private:
@@ -75,18 +71,17 @@ struct ContactRegion {
   std::uint8_t first_deepest() const;
 };
 
-/// Ratio of the mean distance of a convex polygon's points from the mean of its corners to that of the
-/// corners: a spinning face under an even load has the friction of all its points. 1/2 for a line, 1 for a
-/// point. At most four corners, in any order.
+/// Mean distance of a convex polygon's points from the mean of its corners, over that of its corners: the
+/// lever of the friction of a spinning face under an even load. 1/2 for a line, 1 for a point. At most four
+/// corners.
 double spread_of(std::array<Place, 4> corners, int count);
 
-/// True if the face of `a` should be the one that gives the normal, where both could: the larger, so that it
-/// is the floor's rather than the cube's; among equals the one that is below, for a fixed idea of below.
+/// True if the face of `a` gives the normal where both could: the larger one (the floor's, not the cube's);
+/// among equals the one that is below, for a fixed direction of below.
 bool first_is_reference(double area_a, double area_b, const Vector3& normal);
 
 /// Largest distance of a touching corner beyond a face's border [m]: neither rounding nor creep must change
-/// the features of two aligned boxes. `slope` is the tangent of the angle between the faces. The corner is
-/// moved to the border, which changes its depth by slope times the distance, less than 1 um.
+/// the features of two aligned boxes. `slope` is the tangent of the angle between the faces.
 double border_tolerance(double size, double slope);
 
 inline void add_point(Manifold& manifold, const Vector3& point, double depth, int feature) {
@@ -120,10 +115,8 @@ struct Line {
 };
 
 /// Part of a shape that is perpendicular to a direction: a flat face with its outline, or a line. Corners of
-/// a rectangle are in cyclic order; edge i leads from corner i to the next, and is on the side kBorders[i].
-///
-/// A place (x, y) on it is centre + x along[0] + y along[1]; its normal points out of its own shape. Of a
-/// face along[0] x along[1] is the normal or its opposite: corners go round left or right.
+/// a rectangle are in cyclic order, left or right about the normal; edge i leads from corner i to the next,
+/// and is on the side kBorders[i]. A place (x, y) on it is centre + x along[0] + y along[1].
 struct FlatFace {
   enum class Outline { rectangle, circle, line };
 
@@ -146,8 +139,7 @@ struct FlatFace {
 };
 constexpr double kCorner[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
 
-/// Ends of an edge of a rectangle's prism: corners. Undoes edge_name: the two bits go back to the axes that
-/// follow the direction; along it one end has 0, the other 1.
+/// Corners at the ends of an edge of a rectangle's prism: the inverse of edge_name().
 inline std::array<int, 2> edge_ends(int edge) {
   const int direction = edge / 4;
   const int low = (edge & 1) << (direction + 1) % 3 | (edge >> 1 & 1) << (direction + 2) % 3;
@@ -164,11 +156,10 @@ FlatFace lying_towards(const Prism& prism, const Vector3& outward);
 /// it; the edge along `beside` if there are two. A point if there is none.
 Line line_facing(const Prism& prism, const Vector3& n, double tolerance, const Vector3& beside);
 
-/// The line of a round side that is farthest along `facing`. The tolerance lets any direction pass, even one
-/// aslant.
+/// The line of a round side that is farthest along `facing`, whatever its angle.
 inline Line side_line(const Prism& prism, const Vector3& facing) {
-  constexpr double kAny = 2.0;
-  return line_facing(prism, facing, kAny, prism.axis());
+  constexpr double kAnyDirection = 2.0;
+  return line_facing(prism, facing, kAnyDirection, prism.axis());
 }
 
 /// Four places round a rim [rad]; one of them at the lowest, where `slope` (of the depth, by the face's

@@ -19,8 +19,8 @@ class Chord {
   /// Keeps |x + t dx| <= half: t between (-half - x) / dx and (half - x) / dx, in whatever order. A level
   /// line is in or out as a whole; by the quotients it would be 0 / 0 along a side.
   void clip_to_slab(double x, double dx, double half) {
-    if (std::abs(dx) < kLevel) {
-      if (std::abs(x) > half + kBorder) out_ = -std::numeric_limits<double>::infinity();
+    if (std::abs(dx) < kMaxLevelComponent) {
+      if (std::abs(x) > half + kBorderTolerance) out_ = -std::numeric_limits<double>::infinity();
       return;
     }
     const double a = (-half - x) / dx, b = (half - x) / dx;
@@ -28,17 +28,16 @@ class Chord {
   }
   /// Keeps what is within `radius` of the origin, in as many dimensions as the line is given in.
   template <class Vector>
-  /// t = f -+ sqrt(r^2 - m^2) / |dx| about the foot f = -x.dx / dx^2, which is m off the origin. With a line
-  /// given in the plane this is an endless cylinder.
+  /// t = f -+ sqrt(r^2 - m^2) / |dx| about the foot f = -x.dx / dx^2, which is m off the origin.
   void clip_to_ball(const Vector& x, const Vector& dx, double radius) {
     const double length = dx.norm();
-    if (length < kLevel) {
-      if (x.norm() > radius + kBorder) out_ = -std::numeric_limits<double>::infinity();
+    if (length < kMaxLevelComponent) {
+      if (x.norm() > radius + kBorderTolerance) out_ = -std::numeric_limits<double>::infinity();
       return;
     }
     const double nearest = -x.dot(dx) / (length * length);
     const double miss = (x + nearest * dx).norm();
-    if (miss > radius + kBorder) out_ = -std::numeric_limits<double>::infinity();
+    if (miss > radius + kBorderTolerance) out_ = -std::numeric_limits<double>::infinity();
     const double half = std::sqrt(std::max(0.0, radius * radius - miss * miss)) / length;
     clip(nearest - half, nearest + half);
   }
@@ -47,9 +46,9 @@ class Chord {
 
  private:
   /// Largest distance from a side at which a line along it still meets the shape [m].
-  static constexpr double kBorder = 1e-9;
+  static constexpr double kBorderTolerance = 1e-9;
   /// Largest component of a direction that is rounding.
-  static constexpr double kLevel = 1e-12;
+  static constexpr double kMaxLevelComponent = 1e-12;
 
   void clip(double from, double to) { in_ = std::max(in_, from), out_ = std::min(out_, to); }
 
@@ -65,10 +64,9 @@ inline AxisSpan at_point(const ClosestFeatures& features) {
 inline AxisSpan at_edge(const ClosestFeatures& features) {
   return {features.axis_parameter, features.axis_parameter, true};
 }
-/// Part of the axis over the piece of surface whose normal the features have. It always has the point of the
-/// features: rounding, or a normal that is only nearly the piece's, must not put the deepest point outside. A
-/// point if the axis passes the piece by.
-inline AxisSpan over(const Stretch& stretch, const ClosestFeatures& features) {
+/// Part of the axis over the surface whose normal the features have, at least the features' point: rounding
+/// must not put the deepest point outside.
+inline AxisSpan over(const Interval& stretch, const ClosestFeatures& features) {
   if (stretch.s0 >= stretch.s1) return at_point(features);
   return {std::min(std::max(stretch.s0, 0.0), features.axis_parameter),
           std::max(std::min(stretch.s1, 1.0), features.axis_parameter)};
@@ -83,7 +81,7 @@ inline AxisSpan over(const Stretch& stretch, const ClosestFeatures& features) {
 /// place of 0.3 a small turn moved the load so far along a phalanx that held rods crept by up to 20 um/s.
 inline AxisSpan beside_round_side(const Segment& axis, const ClosestFeatures& features, double half) {
   constexpr double kMinCrossingAngle = 0.3;  // touches at a point [rad]
-  Stretch stretch;
+  Interval stretch;
   stretch.clip_to_slab(axis.start.z(), axis.along.z(), half);
   const AxisSpan beside = over(stretch, features);
   const double across = std::abs(Vector3::UnitZ().cross(features.normal).dot(axis.along));

@@ -17,8 +17,7 @@ struct ContactPlane {
   bool entry;  // the face that the phalanx entered by, which is not the nearest any more
 };
 
-/// On the entry face the god object itself stands for the plane's point: the nearest features are those of
-/// another face, and say nothing of this one.
+/// On the entry face the god object is the plane's point: the nearest features are those of another face.
 ContactPlane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, const Contact* memory) {
   if (memory == nullptr || !pair.refinements.entry_face ||
       memory->entry_normal.dot(features.normal) >= kMinSameFaceCosine)
@@ -26,7 +25,7 @@ ContactPlane contact_plane(const TouchingPair& pair, const ClosestFeatures& feat
   return {memory->god_object, memory->entry_normal, true};
 }
 
-/// The contacts of a pair in the last step. A pair has at most two, named 0 and 1.
+/// The contacts of a pair in the last step: at most two, named 0 and 1.
 struct PairMemory {
   PairMemory(const Contact* before, int count, double s) {
     for (int i = 0; i < count; ++i) of_point[before[i].key.point] = before + i;
@@ -80,25 +79,24 @@ struct Indentation {
 /// Zilles & Salisbury 1995: the point of the active plane nearest to the finger's point, which is its
 /// projection x + n n.(q - x). A single plane is active, that of the entry face; where faces meet, the
 /// nearest features choose.
-Vector3 god_object(const Indentation& indentation, double s, const Contact* pressed) {
-  const Vector3 point = pressed != nullptr
-                            ? Vector3(pressed->god_object + (s - pressed->axis_parameter) * indentation.along)
+Vector3 god_object(const Indentation& indentation, double s, const Contact* memory) {
+  const Vector3 point = memory != nullptr
+                            ? Vector3(memory->god_object + (s - memory->axis_parameter) * indentation.along)
                             : Vector3(indentation.pair.in_body.start + s * indentation.along);
   return point + indentation.plane.normal.dot(indentation.plane.point - point) * indentation.plane.normal;
 }
 
-/// A phalanx pressed deep into an object would turn it over by the arm that it has beyond the surface. So it
-/// holds as if it had been pushed back to the surface along its path, which is remembered in the palm. Over
-/// an edge the nearest point stays while the skin rolls past it: there it is the axis that has moved, about
-/// the edge, along its path.
+/// A phalanx deep in an object would turn it over by its lever beyond the surface. So its force acts as if it
+/// had been moved back to the surface along its path, which is kept in the palm's frame. Over an edge the
+/// nearest point stays while the skin rolls past it: there the axis has moved about the edge, along its path.
 ///
 /// With w the direction back (palm * touched_from) and d the depth: p + d w, held against p + d n, is off by
 /// d (w - (n.w) n) along the surface. At an edge the axis's point is r - d off it, along n now, along w as it
 /// came: it has gone (r - d)(n - w), of which across n is left (d - r)(w - (n.w) n).
 Vector3 lever(const Matrix3& palm, bool at_edge, const Contact& contact) {
-  const Vector3 way_back = palm * contact.touched_from;
+  const Vector3 towards_entry = palm * contact.touched_from;
   const double length = at_edge ? contact.depth - contact.radius : contact.depth;
-  return length * (way_back - contact.normal.dot(way_back) * contact.normal);
+  return length * (towards_entry - contact.normal.dot(towards_entry) * contact.normal);
 }
 
 /// The lever is zero at the first contact, w = n, and grows as palm and body turn relative to each other. It
@@ -124,11 +122,12 @@ void swing_back(const TouchingPair& pair, const Contact* held, Contact& contact)
 void place(const Indentation& indentation, double s, const Contact* memory, Contact& contact) {
   const ContactConfiguration& refinements = indentation.pair.refinements;
   contact.depth = indentation.depth(s);
-  const bool pressed = refinements.anchors && memory != nullptr && memory->depth > 0.0 && contact.depth > 0.0;
-  contact.god_object = god_object(indentation, s, pressed ? memory : nullptr);
+  const bool persists =
+      refinements.anchors && memory != nullptr && memory->depth > 0.0 && contact.depth > 0.0;
+  contact.god_object = god_object(indentation, s, persists ? memory : nullptr);
   contact.entry_normal = indentation.plane.normal;
   contact.axis_parameter = s;
-  if (!pressed) {
+  if (!persists) {
     contact.friction = Friction::sticking;
     contact.twist = contact.engaged = 0.0;
   }
@@ -144,22 +143,22 @@ void place(const Indentation& indentation, double s, const Contact* memory, Cont
   contact.share = contact.grip = 1.0;
   contact.impulse.setZero();
   contact.time_of_impact = contact.torque = 0.0;
-  const bool held = pressed && refinements.swing_back && contact.friction == Friction::sticking;
+  const bool held = persists && refinements.swing_back && contact.friction == Friction::sticking;
   swing_back(indentation.pair, held ? memory : nullptr, contact);
 }
 
-/// Contact `point` of the pair, continued from its memory or new. A second point of an old pair continues the
-/// nearest one: it causes no new impact, applies no force where that complies or is ignored, and takes over a
-/// share of its friction along with its load.
-void begin_contact(const TouchingPair& pair, int point, const ContactMemory* memory, ContactMemory& contact) {
-  contact = memory != nullptr ? *memory : ContactMemory();
+/// Contact `point` of the pair at s, continued from its memory or new. A second point of an old pair
+/// continues the nearest one: it causes no new impact, applies no force where that complies or is ignored,
+/// and takes over a share of its friction along with its load. A hand or a body that is spawned beside the
+/// other, without overlap, touches it from then on.
+void continue_contact(const Indentation& indentation, int point, double s, bool at_edge,
+                      const Contact* memory, Contact& contact) {
+  const TouchingPair& pair = indentation.pair;
+  static_cast<ContactMemory&>(contact) = memory != nullptr ? ContactMemory(*memory) : ContactMemory();
   contact.key = pair.key(point);
-  if (memory == nullptr) contact.ignored = pair.hand.emerged || pair.moving.appeared;
-}
-
-/// A hand or a body that appears beside the other, without overlap, touches it from then on.
-void keep_if_apart(const ContactMemory* nearest, Contact& contact) {
-  if (nearest == nullptr && contact.depth <= 0.0) contact.ignored = false;
+  contact.at_edge = at_edge;
+  place(indentation, s, memory, contact);
+  if (memory == nullptr) contact.ignored = contact.depth > 0.0 && (pair.hand.spawned || pair.moving.appeared);
 }
 
 /// Load is shared by the lever rule in the depths, so that the whole is stiffness times depth both for a
@@ -174,10 +173,9 @@ void share_load(Contact& a, Contact& b) {
 
 }  // namespace
 
-/// Flat is what has both ends of the span at the surface, or nearly: from -kSeparation on. Names 0 and 1 are
-/// by the ends of the span, so that each keeps its own memory; a single point goes on as the nearer of the
-/// two by s. On the entry face the nearest features' s is that of another face, and the deepest end presses
-/// instead.
+/// A phalanx lies flat if both ends of the span are within kSeparation of the surface. Points 0 and 1 are
+/// named by the ends of the span, so that each keeps its memory; a single point continues the nearer of the
+/// two by s. On the entry face it is the deepest end, as the nearest features' s is that of another face.
 int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features, const AxisSpan& span,
                        const Contact* before, int count, Contact* now) {
   const PairMemory memory(before, count, features.axis_parameter);
@@ -188,18 +186,14 @@ int update_god_objects(const TouchingPair& pair, const ClosestFeatures& features
                          indentation.reaches_surface(span.s0) && indentation.reaches_surface(span.s1);
   if (!lies_flat) {
     const int point = nearest != nullptr ? nearest->key.point : (features.axis_parameter > 0.5 ? 1 : 0);
-    begin_contact(pair, point, nearest, now[0]);
-    if (!plane.entry) now[0].at_edge = span.at_edge && pair.refinements.edge_grip;
-    place(indentation, plane.entry ? indentation.deepest_end() : features.axis_parameter, nearest, now[0]);
-    keep_if_apart(nearest, now[0]);
+    const bool at_edge = plane.entry ? nearest->at_edge : span.at_edge && pair.refinements.edge_grip;
+    const double s = plane.entry ? indentation.deepest_end() : features.axis_parameter;
+    continue_contact(indentation, point, s, at_edge, nearest, now[0]);
     return 1;
   }
   for (const int point : {0, 1}) {
     const Contact* from = memory.of_point[point] != nullptr ? memory.of_point[point] : nearest;
-    begin_contact(pair, point, from, now[point]);
-    now[point].at_edge = false;
-    place(indentation, point == 0 ? span.s0 : span.s1, from, now[point]);
-    keep_if_apart(nearest, now[point]);
+    continue_contact(indentation, point, point == 0 ? span.s0 : span.s1, false, from, now[point]);
   }
   share_load(now[0], now[1]);
   return 2;

@@ -72,23 +72,18 @@ class NearMemory {
     Set& set = sets_[name_of(segment) % sets_.size()];
     if (set.in_use.test_and_set(std::memory_order_acquire)) return search();
     const Use use(set.in_use);
-    std::size_t closest = 0;
+    NearParts* entry = nullptr;
     double min_motion = 1e300;
-    for (std::size_t i = 0; i < set.entries.size(); ++i) {
-      const double moved = set.entries[i].moved(segment);
-      if (moved < min_motion) min_motion = moved, closest = i;
+    for (NearParts& one : set.entries) {
+      const double moved = one.moved(segment);
+      if (moved < min_motion) min_motion = moved, entry = &one;
     }
-    NearParts& entry = set.entries[closest];
-    if (min_motion < entry.margin) return MeshNearest(shape.surface, segment, range, entry);
+    if (min_motion < entry->margin) return MeshNearest(shape.surface, segment, range, *entry);
     MeshNearest found = search();
-    if (min_motion < kMaxMotion) {
-      entry = found.found() ? found.near_parts(shape.tree) : NearParts{};
-    } else {
-      set.next = (set.next + 1) % set.entries.size();
-      set.entries[set.next] = NearParts{};
-      closest = set.next;
-    }
-    set.entries[closest].start = segment.start, set.entries[closest].end = segment.end();
+    const bool stays = min_motion < kMaxMotion;
+    if (!stays) entry = &set.entries[set.next = (set.next + 1) % set.entries.size()];
+    *entry = stays && found.found() ? found.near_parts(shape.tree) : NearParts{};
+    entry->start = segment.start, entry->end = segment.end();
     return found;
   }
 
@@ -121,9 +116,8 @@ class NearMemory {
   std::array<Set, 127> sets_;
 };
 
-/// A mesh of parts is their union. What is outside all of them is nearest to the union's surface, whatever
-/// lies within: one search through the tree of all faces finds it. What is inside a part has to leave that,
-/// and is as deep as in the part that it is deepest in.
+/// A mesh of parts is their union. Outside all of them one search through the tree of all faces finds the
+/// nearest feature. Inside, the depth is that in the part where it is deepest.
 struct MeshCollider::Impl {
   explicit Impl(const TriangleMesh& mesh) : shape(mesh), parts(parts_of(mesh)), guesses(shape.surface) {
     for (const MeshShape& part : parts)
@@ -195,8 +189,7 @@ std::optional<ClosestFeatures> MeshCollider::Impl::leave_parts(const Segment& se
   return best;
 }
 
-/// Searches for copies of some of its edges, slightly moved, without memory: what decides how long a search
-/// takes, above all how long and thin the faces are, decides it there too.
+/// Searches for displaced copies of some of its edges, without memory. Long thin faces make searches slow.
 double MeshCollider::Impl::mean_search_cost() const {
   constexpr int kSamples = 32;
   constexpr double kMove = 0.01, kOrdinaryVisits = 50.0;  // fraction of the mesh's size, and per search
@@ -261,15 +254,15 @@ double MeshCollider::search_cost() const {
 }
 
 double MeshCollider::deep_search_cost(double depth) const {
-  constexpr double kOfShallow = 10.0, kPartsPerSearch = 600.0;
+  constexpr double kDeepFactor = 10.0, kPartsPerSearch = 600.0;
   const MeshSurface& surface = impl_->shape.surface;
   const double parts = static_cast<double>(surface.faces().size() + surface.edges().size());
   const double centred = std::min(1.0, 2.0 * depth / std::max(1e-9, surface.bounds().sizes().minCoeff()));
-  return kOfShallow * impl_->search_cost + parts / kPartsPerSearch * centred * centred;
+  return kDeepFactor * impl_->search_cost + parts / kPartsPerSearch * centred * centred;
 }
 
-/// From deep inside the surface may be any way off. A segment whose middle is out of the bounds has at most
-/// an end inside, and then cuts the surface, at the distance 0: it is searched no farther than the margin.
+/// Deep inside, the surface may be at any distance. A segment whose middle is out of the bounds is searched
+/// no farther than the margin: with an end inside it cuts the surface, at the distance 0.
 std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, double margin) const {
   const MeshSurface& surface = impl_->shape.surface;
   const Segment segment(capsule);
@@ -287,8 +280,8 @@ std::optional<ClosestFeatures> MeshCollider::closest(const Capsule& capsule, dou
     }
   }
 
-  // In this order: a face's own normal for what is outside; the way out for what is on the surface, where the
-  // gap has no direction, and for what is inside, where it points inwards.
+  // Outside the normal is along the gap; on the surface, where the gap has no direction, and inside, where it
+  // points inwards, the shortest exit gives it.
   const SurfaceNearest& nearest = search.nearest();
   ClosestFeatures features{nearest.distance, search.gap() / nearest.distance, nearest.point,
                            nearest.stretch.middle(), surface.number(nearest)};
@@ -313,7 +306,7 @@ AxisSpan MeshCollider::span(const Capsule& capsule, const ClosestFeatures& featu
   const MeshSurface& surface = impl_->shape.surface;
   const bool is_face = features.part >= 0 && features.part < static_cast<int>(surface.faces().size());
   if (!is_face || axis.along.isZero(0.0)) return {s, s};
-  const Stretch over = surface.over(surface.faces()[features.part], axis, s);
+  const Interval over = surface.over(surface.faces()[features.part], axis, s);
   if ((over.s1 - over.s0) * axis.along.norm() < kMinFlatLength) return {s, s};
   return {std::min(std::max(over.s0, 0.0), s), std::max(std::min(over.s1, 1.0), s)};
 }

@@ -10,11 +10,10 @@ namespace mrhi {
 struct MeshShape;
 
 /// A triangle mesh prepared for contact: a tree of bounding volumes finds the faces and edges near a capsule,
-/// closed forms measure them. Triangles that lie in one plane (within 5e-7 of the mesh's extent) are one
-/// face, so that nothing depends on how a file cuts a surface into triangles, nor on their order. A closed
-/// mesh is solid, also where it is not convex; an open one is a sheet that touches from both sides.
-/// Neighbouring triangles share places of vertices. May be shared between threads and simulations: it
-/// remembers where a search ended, so that the next one is short, but no result depends on that.
+/// closed forms measure them. Triangles in one plane (within 5e-7 of the mesh's extent) are one face, so that
+/// nothing depends on how a file cuts a surface into triangles. A closed mesh is solid; an open one is a
+/// sheet that touches from both sides. Threads and simulations may share a collider: it remembers recent
+/// searches, but no result depends on that.
 class MeshCollider {
  public:
   /// Throws std::invalid_argument if no triangle has an area.
@@ -26,8 +25,8 @@ class MeshCollider {
   /// solid that is not convex, the shortest way out through what is nearest.
   std::optional<ClosestFeatures> closest(const Capsule& capsule, double margin) const;
 
-  /// Part of the capsule's axis over a flat face, that `closest` found or that is beside what it found; a
-  /// point for an edge, a corner, or a face of a curved surface.
+  /// Part of the capsule's axis over the flat face that `closest` found; a point for an edge, a corner, or a
+  /// face of a curved surface.
   AxisSpan span(const Capsule& capsule, const ClosestFeatures& features) const;
 
   /// Part of the axis on which the pad of a capsule lies that touches an edge, a corner or a facet; a point
@@ -36,11 +35,10 @@ class MeshCollider {
 
   const MeshShape& shape() const;
 
-  /// Mean work of a search near the surface, over that of an ordinary mesh; >= 1. Large where long thin faces
-  /// lie side by side.
+  /// Mean work of a search near the surface, over that of an ordinary mesh; >= 1. Large for long thin faces.
   double search_cost() const;
-  /// The same where the surface coincides with the place, or this far below it [m]: next to the middle of a
-  /// round solid, all parts are about as near.
+  /// The same on the surface or this far below it [m]: all parts are about as near to the middle of a round
+  /// solid.
   double deep_search_cost(double depth) const;
 
  private:

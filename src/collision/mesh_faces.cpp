@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
+#include <tuple>
 
 namespace mrhi {
 namespace {
 
-/// Exactly the same place is one vertex; what is nearly so has been joined as the file was loaded, if it was.
+/// Orders places; vertices that nearly coincide have been joined as the file was loaded, if at all.
 bool before(const Vector3& a, const Vector3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
@@ -19,38 +20,31 @@ struct Side {
   bool exists() const { return triangle >= 0; }
 };
 
-/// A side by its ends, the lesser first, and then by its direction.
+/// Sides by their ends, the lesser first, then by their direction, then by their triangle.
 struct DirectedSide {
-  int low, high;
+  std::pair<int, int> ends;
   bool down;
   Side of;
-
-  bool same_line(const DirectedSide& other) const { return low == other.low && high == other.high; }
-  friend bool operator<(const DirectedSide& a, const DirectedSide& b) {
-    return std::make_tuple(a.low, a.high, a.down, a.of.triangle) <
-           std::make_tuple(b.low, b.high, b.down, b.of.triangle);
-  }
 };
 
 std::vector<DirectedSide> sides_of(const TriangleMesh& mesh) {
   std::vector<DirectedSide> sides;
   sides.reserve(3 * mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    for (int k = 0; k < 3; ++k) {
       const int from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
-      sides.push_back(
-          {std::min(from, to), std::max(from, to), from > to, {static_cast<int>(t), static_cast<int>(k)}});
+      sides.push_back({std::minmax(from, to), from > to, {t, k}});
     }
   }
-  std::sort(sides.begin(), sides.end());
+  std::sort(sides.begin(), sides.end(), [](const DirectedSide& a, const DirectedSide& b) {
+    return std::tie(a.ends, a.down, a.of.triangle) < std::tie(b.ends, b.down, b.of.triangle);
+  });
   return sides;
 }
 
 /// The mesh with its vertices in the order of their places, those at one place joined, and its triangles in
-/// the order of their vertices: the same for any order in a file. Vertices that no triangle has are left out.
-///
-/// A triangle is turned to begin with its least vertex, which keeps its sense; what has lost a vertex by
-/// joining has no area and goes.
+/// the order of their vertices, each from its least vertex on: the same for any order in a file. Unused
+/// vertices and triangles of joined vertices are dropped.
 TriangleMesh sorted(const TriangleMesh& mesh) {
   std::vector<char> used(mesh.vertices.size(), 0);
   for (const std::array<int, 3>& triangle : mesh.triangles)
@@ -80,14 +74,14 @@ TriangleMesh sorted(const TriangleMesh& mesh) {
 /// The neighbouring triangle, and its side, at each of a triangle's three sides (from vertex k to the next).
 class Neighbourhood {
  public:
-  /// Of a closed surface whose triangles all face outwards each line has as many sides up as down. Sides of
-  /// one line pair up in the order of their triangles: more than two meet where bodies touch along an edge,
-  /// and any pairing closes it.
+  /// On a closed surface each line has as many sides up as down. They pair up in the order of their
+  /// triangles: more than two meet where bodies touch along an edge, and any pairing closes it.
   explicit Neighbourhood(const TriangleMesh& mesh) : beyond_(mesh.triangles.size()) {
     const std::vector<DirectedSide> sides = sides_of(mesh);
     const auto set = [this](const Side& of, const Side& beyond) { beyond_[of.triangle][of.side] = beyond; };
     for (auto first = sides.begin(); first != sides.end();) {
-      const auto last = std::find_if(first, sides.end(), [&](const auto& s) { return !s.same_line(*first); });
+      const auto last =
+          std::find_if(first, sides.end(), [&](const auto& s) { return s.ends != first->ends; });
       auto up = first, down = std::find_if(first, last, [](const auto&s) { return s.down; });
       closed_ = closed_ && down - first == last - down;
       const auto end_of_up = down;
@@ -185,10 +179,8 @@ class FaceFinder {
     return mesh_.vertices[mesh_.triangles[triangle][i % 3]];
   }
 
-  /// Over the neighbours that are flat beside what is there, as long as they lie on the plane of all: the
-  /// largest triangles begin, whose planes are the surest. Each triangle is held against the plane of all
-  /// taken so far, not against its neighbour alone: over a fine curve neighbours are flat beside each other
-  /// all the way round.
+  /// Adds coplanar neighbours. Each triangle must lie on the plane of all taken so far, not only beside its
+  /// neighbour: on a fine curve neighbours are nearly coplanar all the way round.
   void grow(int seed) {
     const int face = static_cast<int>(planes_.size());
     planes_.emplace_back();
@@ -198,7 +190,7 @@ class FaceFinder {
       for (int side = 0; side < 3; ++side) {
         const Side beyond = neighbourhood_.beyond(open[next], side);
         if (!beyond.exists() || face_of_[beyond.triangle] >= 0) continue;
-        if (!goes_on(open[next], side, beyond) || !on_plane(beyond.triangle, planes_.back())) continue;
+        if (!is_coplanar(open[next], side, beyond) || !on_plane(beyond.triangle, planes_.back())) continue;
         take(beyond.triangle, face);
         open.push_back(beyond.triangle);
       }
@@ -214,7 +206,7 @@ class FaceFinder {
   /// Tests the smaller height of one's apex above the other's plane, A.(apex - corner) / |A|: a length, like
   /// the tolerance. An angle would be too strict for slivers, whose apex is near the shared side. Triangles
   /// that face each other (A.B <= 0) are a fold.
-  bool goes_on(int triangle, int side, const Side& beyond) const {
+  bool is_coplanar(int triangle, int side, const Side& beyond) const {
     if (is_needle(beyond.triangle, beyond.side) || is_needle(triangle, side)) return true;
     const Vector3 &area = areas_[triangle], &other = areas_[beyond.triangle];
     if (area.dot(other) <= 0.0) return false;
@@ -270,7 +262,7 @@ class SeamFinder {
       }
     }
     for (int v = 0; v < static_cast<int>(around_.size()); ++v)
-      if (!is_on_the_way(v)) follow_from(v);
+      if (!is_within_seam(v)) follow_from(v);
     for (std::size_t p = 0; p < pieces_.size(); ++p)  // what is left are rings
       if (!pieces_[p].followed) follow(static_cast<int>(p), pieces_[p].from);
   }
@@ -283,8 +275,8 @@ class SeamFinder {
     bool followed;
   };
 
-  /// Two pieces meet here and part the same two faces; or there is no piece, and the vertex is within a face.
-  bool is_on_the_way(int vertex) const {
+  /// True if two pieces meet here between the same two faces, or none, within a face.
+  bool is_within_seam(int vertex) const {
     const std::vector<int>& pieces = around_[vertex];
     if (pieces.size() != 2) return pieces.empty();
     const Piece &a = pieces_[pieces[0]], &b = pieces_[pieces[1]];
@@ -305,7 +297,7 @@ class SeamFinder {
       vertex = now.from == vertex ? now.to : now.from;
       seam.vertices.push_back(vertex);
       piece = -1;
-      if (!is_on_the_way(vertex)) break;
+      if (!is_within_seam(vertex)) break;
       for (const int next : around_[vertex])
         if (!pieces_[next].followed) piece = next;
     }
@@ -314,8 +306,8 @@ class SeamFinder {
     seams_.push_back(std::move(seam));
   }
 
-  /// Keeps what is farthest from the line between those kept, as long as it is off it (Douglas & Peucker
-  /// 1973). A ring is two lines, between two places far from each other.
+  /// Keeps the vertex that is farthest from the line between those kept, while it is off it (Douglas &
+  /// Peucker 1973). A ring is two lines, between two distant vertices.
   void straighten(std::vector<int>& line) const {
     std::vector<char> kept(line.size(), 0);
     kept.front() = kept.back() = 1;
@@ -343,8 +335,7 @@ class SeamFinder {
       open.emplace_back(from, i), open.emplace_back(i, to);
     }
   }
-  /// From a half line, `part` >= 0: what lies behind the start is as far as the start, or a line that doubles
-  /// back would seem straight.
+  /// From a half line, `part` >= 0: else a line that doubles back would seem straight.
   std::pair<std::size_t, double> farthest(const std::vector<int>& line, std::size_t from,
                                           std::size_t to) const {
     const Vector3& start = mesh_.vertices[line[from]];
@@ -416,8 +407,11 @@ FlatFaces merge_coplanar_triangles(const TriangleMesh& unsorted) {
   }
   for (const Seam& seam : lines.seams()) {
     for (std::size_t i = 1; i < seam.vertices.size(); ++i) {
-      result.edges.push_back(
-          {corner_of[seam.vertices[i - 1]], corner_of[seam.vertices[i]], seam.face, seam.other});
+      const int from = seam.vertices[i - 1], to = seam.vertices[i];
+      result.edges.push_back({mesh.vertices[from],
+                              mesh.vertices[to] - mesh.vertices[from],
+                              {{corner_of[from], corner_of[to]}},
+                              {{seam.face, seam.other < 0 ? seam.face : seam.other}}});
     }
   }
   return result;

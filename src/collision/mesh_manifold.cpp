@@ -17,11 +17,10 @@ constexpr double kFlush = 1e-5;
 constexpr double kMaxExit = 0.002;
 /// Least cosine between the outward direction of a corner or an edge and the surface that it meets.
 constexpr double kMinOpposed = 0.2;
-/// Names of a byte: 0 to 99 corners and 100 to 127 edges of what sticks out in b, and 128 beyond these of
-/// what sticks out in a.
-constexpr int kCornerNames = 100, kEdgeNames = 28, kSecond = 128;
-/// Margin at an edge's ends, which belong to the corners there: else one point would have two names.
-constexpr double kAtEnd = 1e-6;
+/// Names in a byte: corners 0 to 99 and edges 100 to 127 of a in b, and from 128 on those of b in a.
+constexpr int kCornerNames = 100, kEdgeNames = 28, kFirstNameOfB = 128;
+/// Fraction of an edge at its ends that belongs to the corners: else one point would have two names.
+constexpr double kEndMargin = 1e-6;
 constexpr std::size_t kDirections = 8;
 /// Edges of each mesh that stand for all beyond the budget. Each is measured with one of its corners.
 constexpr std::size_t kSampledEdges = 24;
@@ -52,10 +51,7 @@ struct ProbeContact {
   bool flush = false;  // beside a surface that it does not face: carries nothing if anything else does
 };
 
-/// Measures what sticks out of one shape in the other.
-///
-/// The normal of what is found points out of `other`: turned over unless that is b, as a manifold's points
-/// out of b.
+/// Measures corners and edges of one shape in the other. Normals point out of b, as a manifold's.
 struct Probing {
   const ManifoldShape& of;
   const Pose& pose;
@@ -65,9 +61,9 @@ struct Probing {
   double margin;
   SearchBudget& budget;
 
-  /// closest_on() the other shape, charged to the budget.
+  /// Closest features of the other shape, charged to the budget.
   std::optional<ClosestFeatures> search(const Capsule& local, double range) const {
-    const auto features = closest_on(other, local, range);
+    const auto features = other.closest(local, range);
     budget.spend(search_work(other, features ? features->distance : range));
     return features;
   }
@@ -79,7 +75,7 @@ struct Probing {
     auto features = search({other_pose.to_local(probe.start), other_pose.to_local(probe.end), 0.0}, margin);
     if (!features) return std::nullopt;
     // A part of the edge's length, not metres.
-    const bool at_end = features->axis_parameter < kAtEnd || features->axis_parameter > 1.0 - kAtEnd;
+    const bool at_end = features->axis_parameter < kEndMargin || features->axis_parameter > 1.0 - kEndMargin;
     if (!probe.is_corner() && at_end) return std::nullopt;
     const auto opposes = [&](const Vector3& normal) { return is_opposed(probe, normal); };
     const bool closed = other.mesh == nullptr || other.mesh->shape().surface.closed();
@@ -92,7 +88,8 @@ struct Probing {
     const Vector3 normal = other_pose.orientation * features->normal;
     const Vector3 midway = features->point + 0.5 * features->distance * features->normal;
     return ProbeContact{other_pose * midway, other_is_b ? normal : Vector3(-normal), -features->distance,
-                        static_cast<std::uint8_t>(other_is_b ? probe.name : kSecond + probe.name), flush};
+                        static_cast<std::uint8_t>(other_is_b ? probe.name : kFirstNameOfB + probe.name),
+                        flush};
   }
 
   /// True if a face beside the probe, or all of them together, look against the normal, which is in the other
@@ -135,7 +132,7 @@ struct Probing {
       mesh.tree.visit(may_be_shorter, [&](int part) {
         if (part >= static_cast<int>(surface.faces().size())) return;
         const MeshSurface::Face& face = surface.faces()[part];
-        const Stretch over = surface.over(face, segment, 0.5);
+        const Interval over = surface.over(face, segment, 0.5);
         if (surface.convex() || over.s0 <= over.s1) take(face.normal.dot(place) - face.height, face.normal);
       });
       budget.spend(other.mesh->search_cost());
@@ -150,9 +147,8 @@ struct Probing {
     return best;
   }
 
-  /// No part of a node is deeper in the other shape than this. Signed distance changes by no more than the
-  /// way between two places: with the node's centre at the distance D and all its parts within r of it, none
-  /// is deeper than r - D.
+  /// Upper bound of the depth of a node's parts: r - D, with the centre at the signed distance D and all
+  /// parts within r of it.
   double max_depth(const MeshTree::Node& node) const {
     const Vector3 centre = pose * node.centre;
     const double apart = (centre - other_pose.position).norm() - other.bounding_radius - node.radius;
@@ -163,7 +159,7 @@ struct Probing {
   }
 };
 
-/// The corners and edges of a shape, always in the same order; of a mesh those in nodes that are wanted.
+/// The corners and edges of a shape, always in the same order; of a mesh those in admitted nodes.
 template <typename Admits, typename See>
 struct Probes {
   const Probing& probing;
@@ -187,8 +183,8 @@ struct Probes {
   /// shape, with the normal out of it: the direction is its negative.
   Vector3 facing_from(const Capsule& inside, double reach) const {
     const Pose& other = probing.other_pose;
-    const auto features = closest_on(
-        probing.other, {other.to_local(inside.start), other.to_local(inside.end), inside.radius}, reach);
+    const auto features = probing.other.closest(
+        {other.to_local(inside.start), other.to_local(inside.end), inside.radius}, reach);
     return features ? Vector3(-(other.orientation * features->normal)) : Vector3::Zero();
   }
   /// Adds the support point of a shape without known corners or edges.
@@ -214,9 +210,7 @@ struct Probes {
               .facing(face((along + 1) % 3, low), face((along + 2) % 3, low)));
     }
   }
-  /// Rims, and the side line that faces the other, and with it the lowest point of a rim. The capsule within
-  /// the cylinder stands for it: half ends of the lesser of radius and half length, so that none of it sticks
-  /// out.
+  /// Rims, and the side line that faces the other shape, as seen from the capsule inscribed in the cylinder.
   void of_round(const Prism& prism) const {
     for (const double side : {-1.0, 1.0}) {
       const FlatFace cap = face_towards(prism, side * prism.axis());
@@ -256,16 +250,14 @@ struct Probes {
   }
 };
 
-/// What of both shapes sticks out in the other.
-///
-/// Visits of a tree are always in the same order, so that the first of equals is the same one at every call.
-/// Beyond the budget the contacts are a subset: those that the first visit found, thinned evenly, the deepest
-/// of them, and those of sampled edges.
+/// Contacts of the corners and edges of both shapes in the other, always in the same order. Beyond the budget
+/// they are a subset: those that the first visit found, thinned evenly, the deepest of them, and those of
+/// sampled edges.
 class ProbeContacts {
  public:
   ProbeContacts(const Probing& of_a, const Probing& of_b) : both_{{of_a, of_b}}, budget_(of_a.budget) {
     const auto may_touch = [this](const Probing& probing, const MeshTree::Node& node) {
-      return found_ <= kRemembered && probing.max_depth(node) >= -probing.margin;
+      return found_ <= kMaxKept && probing.max_depth(node) >= -probing.margin;
     };
     measure(may_touch, [this](const ProbeContact& contact) { remember(contact); });
     count_ = found_;
@@ -282,11 +274,11 @@ class ProbeContacts {
     count_ = kept_count_;
   }
 
-  /// Calls `see(contact)` for all, but for nodes of meshes that are not `admits(probing, node)`. Few are
-  /// measured once, many each time.
+  /// Calls `see(contact)` for all in nodes that it `admits(probing, node)`. Few are measured once, many each
+  /// time.
   template <typename Admits, typename See>
   void each(const Admits& admits, const See& see) const {
-    if (!subset_ && count_ > kRemembered) return measure(admits, see);
+    if (!subset_ && count_ > kMaxKept) return measure(admits, see);
     for (std::size_t i = 0; i < count_; ++i) see(kept_[i]);
   }
   /// Returns the first of the deepest of those that `fits` accepts and that are deeper than `least`.
@@ -310,13 +302,13 @@ class ProbeContacts {
   }
 
  private:
-  static constexpr std::size_t kRemembered = 320, kSamples = 4 * kSampledEdges;
+  static constexpr std::size_t kMaxKept = 320, kSamples = 4 * kSampledEdges;
 
   /// Keeps all while they are few, later every 2^n-th.
   void remember(const ProbeContact& contact) {
     note_deepest(contact);
     if (found_++ % stride_ != 0) return;
-    if (kept_count_ == kRemembered) {
+    if (kept_count_ == kMaxKept) {
       for (std::size_t i = 0; 2 * i < kept_count_; ++i) kept_[i] = kept_[2 * i];
       kept_count_ /= 2;
       stride_ *= 2;
@@ -369,7 +361,7 @@ class ProbeContacts {
 
   std::array<Probing, 2> both_;
   SearchBudget& budget_;
-  std::array<ProbeContact, kRemembered + kSamples + 1> kept_;
+  std::array<ProbeContact, kMaxKept + kSamples + 1> kept_;
   std::size_t kept_count_ = 0, count_ = 0;
   std::size_t found_ = 0, stride_ = 1;
   ProbeContact deepest_{Vector3::Zero(), Vector3::UnitZ(), -1e300, 0, true};
@@ -379,54 +371,43 @@ class ProbeContacts {
 /// The contacts of the deepest one's region that are farthest in eight directions across its normal. The
 /// first direction is 0.1 rad off u, so that none is along a box's sides, where rounding would decide between
 /// two corners.
-class Spread {
- public:
-  Spread(const ProbeContacts& contacts, const ProbeContact& deepest) : deepest_(deepest) {
-    const Vector3 u = deepest.normal.unitOrthogonal(), v = deepest.normal.cross(u);
-    for (std::size_t k = 0; k < kDirections; ++k) {
-      const double angle = 0.1 + 0.25 * 3.141592653589793 * static_cast<double>(k);
-      out_[k] = std::cos(angle) * u + std::sin(angle) * v;
-    }
-    farthest_.fill(-1e300);
-    contacts.each([&](const Probing& probing, const MeshTree::Node& node) { return may_be(probing, node); },
-                  [&](const ProbeContact& contact) { see(contact); });
+std::array<ProbeContact, kDirections> outermost(const ProbeContacts& contacts, const ProbeContact& deepest,
+                                                const Vector3& u, const Vector3& v) {
+  std::array<Vector3, kDirections> out;
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    const double angle = 0.1 + 0.25 * 3.141592653589793 * static_cast<double>(k);
+    out[k] = std::cos(angle) * u + std::sin(angle) * v;
   }
-
-  const std::array<ProbeContact, kDirections>& outermost() const { return outermost_; }
-
- private:
-  bool may_be(const Probing& probing, const MeshTree::Node& node) const {
-    const Vector3 offset = probing.pose * node.centre - deepest_.point;
+  std::array<double, kDirections> distances;
+  distances.fill(-1e300);
+  std::array<ProbeContact, kDirections> farthest;
+  const auto may_be = [&](const Probing& probing, const MeshTree::Node& node) {
+    const Vector3 offset = probing.pose * node.centre - deepest.point;
     // A contact is midway between the surfaces: half the margin from the part.
-    const double around = node.radius + 0.5 * probing.margin + std::max(0.0, 0.5 * deepest_.depth);
+    const double around = node.radius + 0.5 * probing.margin + std::max(0.0, 0.5 * deepest.depth);
     bool farther = false;
     for (std::size_t k = 0; k < kDirections && !farther; ++k)
-      farther = out_[k].dot(offset) + around > farthest_[k] + kSameDepth;
+      farther = out[k].dot(offset) + around > distances[k] + kSameDepth;
     return farther && probing.max_depth(node) >= -probing.margin;
-  }
-  void see(const ProbeContact& contact) {
-    if (contact.normal.dot(deepest_.normal) < kMinSameRegionCosine) return;
+  };
+  contacts.each(may_be, [&](const ProbeContact& contact) {
+    if (contact.normal.dot(deepest.normal) < kMinSameRegionCosine) return;
     for (std::size_t k = 0; k < kDirections; ++k) {
-      const double distance = out_[k].dot(contact.point - deepest_.point);
-      if (distance > farthest_[k] + kSameDepth) farthest_[k] = distance, outermost_[k] = contact;
+      const double distance = out[k].dot(contact.point - deepest.point);
+      if (distance > distances[k] + kSameDepth) distances[k] = distance, farthest[k] = contact;
     }
-  }
-
-  const ProbeContact& deepest_;
-  std::array<Vector3, kDirections> out_;
-  std::array<double, kDirections> farthest_;
-  std::array<ProbeContact, kDirections> outermost_;
-};
+  });
+  return farthest;
+}
 
 using Names = std::array<bool, 256>;
 
-/// Adds the region of the deepest contact, seen along the normal, in the plane of u and v. While they are
-/// sorted, `feature` counts the points; in the end it is a name again. Two with the same name, which numbers
-/// modulo 100 and 28 may give, get the next free one.
+/// Adds the region of the deepest contact, in the plane of u and v. While points are sorted, their `feature`
+/// is an index in `taken`. A name that is taken, as numbers are modulo 100 and 28, becomes the next free one.
 void add_region(const ProbeContacts& contacts, const ProbeContact& deepest, int number, Names& named,
                 Manifold& manifold) {
-  const Spread spread(contacts, deepest);
   const Vector3 u = deepest.normal.unitOrthogonal(), v = deepest.normal.cross(u);
+  const auto farthest = outermost(contacts, deepest, u, v);
   std::array<const ProbeContact*, kDirections + 1> taken{};
   ContactRegion region;
   const auto take = [&](const ProbeContact& contact) {
@@ -437,7 +418,7 @@ void add_region(const ProbeContacts& contacts, const ProbeContact& deepest, int 
     region.add({{{u.dot(offset), v.dot(offset)}}, contact.depth, static_cast<std::uint8_t>(region.count), 0});
   };
   take(deepest);
-  for (const ProbeContact& contact : spread.outermost()) take(contact);
+  for (const ProbeContact& contact : farthest) take(contact);
   region.sort_around();
   region.reduce();
   region.straighten();
@@ -451,9 +432,9 @@ void add_region(const ProbeContacts& contacts, const ProbeContact& deepest, int 
   }
 }
 
-/// Two convex shapes touch in one region: what agrees with no other is a corner near an edge.
-/// Elsewhere each further region begins with the deepest overlap that agrees with none of the others. Gaps do
-/// not begin one: beyond the rim of a table the nearest surface of it is its side.
+/// Two convex shapes touch in one region. Elsewhere each further region begins with the deepest overlap whose
+/// normal differs from the others'. Gaps begin none: beyond the rim of a table its nearest surface is its
+/// side.
 Manifold chosen(const ProbeContacts& contacts, bool convex) {
   Manifold manifold;
   Names named{};

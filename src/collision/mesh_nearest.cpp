@@ -73,13 +73,10 @@ void MeshNearest::search(const MeshTree& tree, double range) {
       });
 }
 
-/// All parts that may be the nearest one while the segment's ends have not moved by more than `margin`. A way
-/// of s changes no distance by more than s: what was farther than the nearest by 2 s is then still not
-/// nearer. A face that is nearest at its border says nothing: it comes with the edges there.
-///
-/// With d the nearest's distance and b that of the nearest part that is left out: after a displacement of s
-/// the nearest is no farther than d + s, and all left out no nearer than b - s, so that margin = (b - d) / 2.
-/// Faces beyond the first 28 and edges beyond the nearest 12 bring b down.
+/// Parts that may be the nearest one while the segment's ends have not moved by more than `margin`. A motion
+/// of s changes no distance by more than s. With d the nearest's distance and b that of the nearest part that
+/// is left out, margin = (b - d) / 2. A face that is nearest at its border comes with the edges there. Faces
+/// beyond the first 28 and edges beyond the nearest 12 bring b down.
 NearParts MeshNearest::near_parts(const MeshTree& tree) const {
   constexpr std::size_t kEdgesKept = 12, kFacesKept = NearParts::kCapacity - kEdgesKept;
   constexpr double kMaxMargin = 1e-4, kRounding = 1e-9;
@@ -99,15 +96,14 @@ NearParts MeshNearest::near_parts(const MeshTree& tree) const {
       [&](int part) {
         if (is_too_far(part, bound)) return;
         const bool is_face = part < faces_;
-        const SurfaceNearest now = is_face ? surface_.nearest_on_face(part, segment_)
-                                           : surface_.nearest_on_edge(part - faces_, segment_);
+        const SurfaceNearest now = measured(part);
         if (now.distance >= bound) return;
         if (is_face) {
-          if (face_count == kFacesKept) {
+          if (face_count < kFacesKept) {
+            faces[face_count++] = {now.distance, part};
+          } else {
             bound = std::min(bound, now.distance);
-            return;
           }
-          faces[face_count++] = {now.distance, part};
           return;
         }
         std::size_t place = edge_count++;
@@ -132,7 +128,6 @@ NearParts MeshNearest::near_parts(const MeshTree& tree) const {
     for (const int face : surface_.edges()[edges[i].part - faces_].faces) add(face);
   }
   if (near.count > NearParts::kCapacity) return {};
-  near.start = segment_.start, near.end = segment_.end();
   near.margin = std::max(0.0, 0.5 * (bound - nearest().distance) - kRounding);
   return near;
 }
@@ -160,12 +155,16 @@ bool MeshNearest::is_too_far(int part, double limit) const {
   return min_height_ - facing_.dot(edge.start) - std::max(0.0, facing_.dot(edge.along)) > limit;
 }
 
+SurfaceNearest MeshNearest::measured(int part) const {
+  return part < faces_ ? surface_.nearest_on_face(part, segment_)
+                       : surface_.nearest_on_edge(part - faces_, segment_);
+}
+
 /// Ties go to the lesser number, whichever was measured first.
 void MeshNearest::measure(int part, double range) {
   if (is_too_far(part, limit(range))) return;
   const bool is_face = part < faces_;
-  const SurfaceNearest now =
-      is_face ? surface_.nearest_on_face(part, segment_) : surface_.nearest_on_edge(part - faces_, segment_);
+  const SurfaceNearest now = measured(part);
   SurfaceNearest& best = is_face ? on_face_ : on_edge_;
   int& best_part = is_face ? face_ : edge_;
   if (now.distance > best.distance || (now.distance == best.distance && part > best_part)) return;
@@ -189,8 +188,8 @@ namespace {
 struct Exit {
   double separation = -1e300;
   Vector3 normal = Vector3::UnitZ();
-  Stretch stretch{0.5, 0.5};  // of the segment, that comes out last
-  bool through = false;       // the face itself, not only its plane
+  Interval stretch{0.5, 0.5};  // of the segment, that comes out last
+  bool through = false;        // the face itself, not only its plane
   int face = -1;
 };
 
@@ -206,8 +205,8 @@ Exit exit_distance(const Segment& segment, const MeshSurface& surface, int index
   exit.separation = face.normal.dot(segment.start) - face.height + std::min(rise, 0.0);
   exit.normal = face.normal;
   exit.stretch = {rise > -kParallel ? 0.0 : 1.0, rise < kParallel ? 1.0 : 0.0};
-  const Stretch over = surface.over(face, segment, exit.stretch.middle());
-  const Stretch through{std::max(over.s0, exit.stretch.s0), std::min(over.s1, exit.stretch.s1)};
+  const Interval over = surface.over(face, segment, exit.stretch.middle());
+  const Interval through{std::max(over.s0, exit.stretch.s0), std::min(over.s1, exit.stretch.s1)};
   exit.through = through.s0 <= through.s1;
   if (exit.through) exit.stretch = through;
   return exit;
@@ -250,7 +249,7 @@ class ExitSearch {
   double cost(const MeshTree::Node& node) const {
     const double depth = node.depth(segment_);
     if (surface_.convex()) return depth;
-    return node.may_be_exit(segment_) ? std::max(depth, node.distance(segment_)) : kNoWay;
+    return node.may_be_exit(segment_) ? std::max(depth, node.distance(segment_)) : kUnreachable;
   }
   /// Less the best separation is the least depth so far; 1e-9 keeps ties, which the numbers decide.
   double limit() const { return -std::max({face_.separation, edge_.distance, known_}) + 1e-9; }
@@ -268,7 +267,7 @@ class ExitSearch {
   }
 
  private:
-  static constexpr double kNoWay = std::numeric_limits<double>::infinity();  // beyond any limit
+  static constexpr double kUnreachable = std::numeric_limits<double>::infinity();  // beyond any limit
 
   /// A convex solid has every plane as a bound, also from outside by rounding. Elsewhere a face that the
   /// segment is above is no exit.

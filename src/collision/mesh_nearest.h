@@ -22,30 +22,26 @@ struct NearParts {
   }
 };
 
-/// What of a surface is nearest to a segment, if it is no farther than a range. Faces come before the edges
-/// around them, and of parts that are as near the first: the answer does not depend on where the search
-/// began.
-///
-/// A face is only nearest by its inside, so that a place on a border has edges and corners alone;
-/// kSameDistance has those that rounding makes nearer than their face by an ulp give way to it.
+/// The part of a surface that is nearest to a segment, within a range. Faces come before the edges around
+/// them, and of equally near parts the first: the result does not depend on where the search began. A face is
+/// only nearest by its inside; kSameDistance lets it win over an edge that rounding makes nearer by an ulp.
 class MeshNearest {
  public:
-  /// `guess` is a part to begin with, or -1. What stands above a convex solid needs no search if the guess is
-  /// right.
+  /// `guess` is a part to begin with, or -1. Above a convex solid a right guess needs no search.
   MeshNearest(const MeshSurface& surface, const MeshTree& tree, const Segment& segment, double range,
               int guess);
 
   /// The same where `near` holds for the segment: without a search.
   MeshNearest(const MeshSurface& surface, const Segment& segment, double range, const NearParts& near);
 
-  /// What was found, and how far that is so. Ends that move by up to the margin change no distance by more.
+  /// Parts that may be nearest while the ends move by at most its margin.
   NearParts near_parts(const MeshTree& tree) const;
 
   bool found() const { return nearest().distance <= range_; }
   const SurfaceNearest& nearest() const {
     return on_face_.distance <= on_edge_.distance + kSameDistance ? on_face_ : on_edge_;
   }
-  /// The part that it is on, as the tree names it, or another near it if nothing is within the range.
+  /// The nearest part, as the tree names it, or another near it if nothing is within the range.
   int part() const { return on_face_.distance <= on_edge_.distance + kSameDistance ? face_ : edge_; }
   /// Nodes and parts that the search has looked at.
   int visits() const { return visits_; }
@@ -63,6 +59,7 @@ class MeshNearest {
   void search(const MeshTree& tree, double range);
   bool is_below(const MeshTree::Node& node, double limit) const;
   bool is_too_far(int part, double limit) const;
+  SurfaceNearest measured(int part) const;
   void measure(int part, double range);
   void face_nearest();
   double limit(double range) const {
@@ -80,11 +77,10 @@ class MeshNearest {
   double min_height_ = 0.0;           // that any of the segment reaches along it
 };
 
-/// The shortest translation that takes a segment, which cuts the surface or lies inside, out by a face or an
-/// edge along which the solid bulges; distance <= 0. Exact for a convex mesh. Elsewhere the exit has to
-/// lead through the face or edge itself; what the segment meets farther on is not looked at. Where there is
-/// none: out by the plane of the face `fallback`. A way that is `known` is the answer unless there is a
-/// shorter one.
+/// The shortest translation that takes a segment, which cuts the surface or lies inside, out by a face or a
+/// convex edge; distance <= 0. Exact for a convex mesh. Elsewhere the exit must lead through the face or edge
+/// itself, whatever the segment meets farther on; without one it is the plane of the face `fallback`. `known`
+/// is the result unless there is a shorter exit.
 ClosestFeatures leave_mesh(const Segment& segment, const MeshSurface& surface, const MeshTree& tree,
                            int fallback, const ClosestFeatures* known = nullptr);
 

@@ -6,17 +6,12 @@ namespace mrhi {
 namespace {
 
 /// Largest bend of a flat edge [rad]. |n0 x n1| is the sine of the bend.
-constexpr double kFlat = 1e-6;
+constexpr double kMaxFlatBend = 1e-6;
 /// Smallest distance of a point from a border, as a fraction of the border's length, and of a gap from a
 /// plane, as a fraction of its own length, that counts as clear.
-constexpr double kClear = 1e-5;
+constexpr double kMinClearance = 1e-5;
 /// Shortest length over a face that can end a pad [m]; shorter ones are rounding beside an edge.
-constexpr double kSliver = 1e-6;
-
-double nearest_to(const Vector3& place, const Segment& segment) {
-  const double squared = segment.along.squaredNorm();
-  return squared == 0.0 ? 0.5 : clamp_unit(segment.along.dot(place - segment.start) / squared);
-}
+constexpr double kMinPadLength = 1e-6;
 
 /// A segment seen along a normal n, on the surface under it. With q = along x n across it, an edge's ends are
 /// q.(start - p) and that plus q.edge to one side of it.
@@ -45,44 +40,40 @@ MeshSurface::MeshSurface(const TriangleMesh& mesh) {
   FlatFaces flat = merge_coplanar_triangles(mesh);
   corners_ = std::move(flat.corners);
   corner_normals_ = std::move(flat.corner_normals);
+  faces_ = std::move(flat.faces);
+  edges_ = std::move(flat.edges);
   closed_ = flat.closed;
   for (const Vector3& corner : corners_) bounds_.extend(corner);
-  for (const FlatFaces::Face& face : flat.faces) faces_.push_back({face.normal, face.height, 0, 0, true});
-  for (const FlatFaces::Edge& edge : flat.edges) {
-    const Vector3& start = corners_[edge.from];
-    const int other = edge.other < 0 ? edge.face : edge.other;
-    edges_.push_back({start, corners_[edge.to] - start, {{edge.from, edge.to}}, {{edge.face, other}}, false});
-  }
-  add_sides(flat.edges);
+  add_sides();
   find_bends(flat.one_piece);
 }
 
-/// Edges have `face` on their left, seen from outside: along x n points out of it, in its plane; round
-/// `other` the edge runs the other way. `reach` is the side's plane, outward.x = reach; lengths are those of
-/// the edges, not 1.
-void MeshSurface::add_sides(const std::vector<FlatFaces::Edge>& edges) {
+/// Edges have their first face on their left, seen from outside: along x n points out of it, in its plane;
+/// round the other the edge runs the other way. `reach` is the side's plane, outward.x = reach; lengths are
+/// those of the edges, not 1.
+void MeshSurface::add_sides() {
   first_edge_.assign(corners_.size() + 1, 0);
-  for (const FlatFaces::Edge& edge : edges) {
-    ++faces_[edge.face].count;
-    if (edge.other >= 0) ++faces_[edge.other].count;
-    ++first_edge_[edge.from + 1], ++first_edge_[edge.to + 1];
+  for (const Edge& edge : edges_) {
+    ++faces_[edge.faces[0]].count;
+    if (!edge.is_border()) ++faces_[edge.faces[1]].count;
+    for (const int corner : edge.corners) ++first_edge_[corner + 1];
   }
   int first = 0;
   for (Face& face : faces_) face.first = first, first += face.count, face.count = 0;
   for (std::size_t c = 0; c < corners_.size(); ++c) first_edge_[c + 1] += first_edge_[c];
   sides_.resize(first);
-  edges_at_.resize(2 * edges.size());
+  edges_at_.resize(2 * edges_.size());
   std::vector<std::size_t> next(first_edge_);
-  for (int e = 0; e < static_cast<int>(edges.size()); ++e) {
+  for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
+    const Edge& edge = edges_[e];
     const auto add = [&](int of, const Vector3& along) {
       Face& face = faces_[of];
       const Vector3 outward = along.cross(face.normal);
-      sides_[face.first + face.count++] = {outward, outward.dot(edges_[e].start), e};
+      sides_[face.first + face.count++] = {outward, outward.dot(edge.start), e};
     };
-    const FlatFaces::Edge& edge = edges[e];
-    add(edge.face, edges_[e].along);
-    if (edge.other >= 0) add(edge.other, -edges_[e].along);
-    for (const int corner : {edge.from, edge.to}) edges_at_[next[corner]++] = e;
+    add(edge.faces[0], edge.along);
+    if (!edge.is_border()) add(edge.faces[1], -edge.along);
+    for (const int corner : edge.corners) edges_at_[next[corner]++] = e;
   }
   for (Face& face : faces_) face.convex = is_convex(face);
 }
@@ -95,8 +86,8 @@ void MeshSurface::find_bends(bool one_piece) {
   for (Edge& edge : edges_) {
     const std::array<Vector3, 2> normal = normals(edge);
     const double bend = normal[0].cross(normal[1]).dot(edge.along.normalized());
-    edge.bulges = bend > kFlat;
-    convex_ = convex_ && bend > -kFlat;
+    edge.bulges = bend > kMaxFlatBend;
+    convex_ = convex_ && bend > -kMaxFlatBend;
   }
 }
 
@@ -105,10 +96,10 @@ bool MeshSurface::is_convex(const Face& face) const {
   if (face.count <= 3) return true;
   for (int i = face.first; i < face.first + face.count; ++i) {
     const Side& side = sides_[i];
-    const double slack = 2.0 * kFlatness * bounds_.sizes().maxCoeff() * side.outward.norm();
+    const double tolerance = 2.0 * kFlatness * bounds_.sizes().maxCoeff() * side.outward.norm();
     bool behind = true;
     each_corner(face,
-                [&](const Vector3& c) { behind = behind && side.outward.dot(c) <= side.reach + slack; });
+                [&](const Vector3& c) { behind = behind && side.outward.dot(c) <= side.reach + tolerance; });
     if (!behind) return false;
   }
   return true;
@@ -127,9 +118,9 @@ bool MeshSurface::inside(const Face& face, const Vector3& place) const {
 }
 
 /// From the last crossing before s to the first after it.
-Stretch MeshSurface::around(const Face& face, const Segment& segment, double s) const {
+Interval MeshSurface::around(const Face& face, const Segment& segment, double s) const {
   if (!inside(face, segment.at(s))) return {1.0, 0.0};
-  Stretch stretch;
+  Interval stretch;
   if (segment.along.isZero(0.0)) return stretch;
   const Seen seen(segment, face.normal);
   for (int i = face.first; i < face.first + face.count; ++i) {
@@ -141,9 +132,9 @@ Stretch MeshSurface::around(const Face& face, const Segment& segment, double s) 
 }
 
 /// Of a convex face by its sides' half-planes, outward.(start + s along) <= reach (Cyrus & Beck 1978).
-Stretch MeshSurface::over(const Face& face, const Segment& segment, double s) const {
+Interval MeshSurface::over(const Face& face, const Segment& segment, double s) const {
   if (!face.convex) return around(face, segment, s);
-  Stretch stretch;
+  Interval stretch;
   for (int i = face.first; i < face.first + face.count; ++i) {
     const Side& side = sides_[i];
     const double x0 = side.outward.dot(segment.start) - side.reach, dx = side.outward.dot(segment.along);
@@ -179,17 +170,18 @@ int MeshSurface::face_over(int part, const Vector3& place) const {
 /// The faces are those under a line slightly beside the axis, because a symmetric body may have edges and
 /// corners exactly under the axis.
 Pad MeshSurface::pad(const Segment& axis, const ClosestFeatures& deepest) const {
-  constexpr double kAside = 1e-7, kOnwards = 0.6e-7;  // [m]
+  constexpr double kSideOffset = 1e-7, kForwardOffset = 0.6e-7;  // [m]
   constexpr int kMaxFaces = 64;
-  const double length = axis.along.norm(), sliver = kSliver / length;
+  const double length = axis.along.norm(), min_length = kMinPadLength / length;
   const Vector3& up = deepest.normal;
-  const Vector3 aside = kAside / length * up.cross(axis.along), on = kOnwards / length * axis.along;
+  const Vector3 aside = kSideOffset / length * up.cross(axis.along),
+                on = kForwardOffset / length * axis.along;
   Seen line(axis, up);
   line.start += aside;
   const int first = face_over(deepest.part, deepest.point + aside + on);
   Pad pad{deepest.axis_parameter, deepest.axis_parameter, 0.0};
   for (const double side : {-1.0, 1.0}) {
-    double s = deepest.axis_parameter + kOnwards / length, rise = 0.0;
+    double s = deepest.axis_parameter + kForwardOffset / length, rise = 0.0;
     int index = first;
     for (int count = 0; index >= 0 && count < kMaxFaces; ++count) {
       const Face& face = faces_[index];
@@ -200,14 +192,14 @@ Pad MeshSurface::pad(const Segment& axis, const ClosestFeatures& deepest) const 
         const double crosses = line.crossing(edge);
         if (crosses == 2.0 || side * (crosses - s) <= 0.0 || side * (until - crosses) <= 0.0) continue;
         until = crosses;
-        next = edge.faces[0] == edge.faces[1] ? -1 : edge.faces[edge.faces[0] == index ? 1 : 0];
+        next = edge.is_border() ? -1 : edge.faces[edge.faces[0] == index ? 1 : 0];
       }
       const bool away = face.normal.dot(up) < 0.0;
       const double slope = away ? -face.normal.dot(axis.along) : face.normal.dot(axis.along);
       const double risen = rise + slope * (until - s), step = std::abs(until - s);
       const double tilt = face.normal.cross(up).norm();
       const double lifted = std::max(std::max(rise + risen, 0.0) / -deepest.distance, tilt / kMaxTilt);
-      if (step > sliver && (lifted >= 1.0 || (closed_ && away))) break;
+      if (step > min_length && (lifted >= 1.0 || (closed_ && away))) break;
       const double lies = std::max(0.0, 1.0 - lifted) * step;
       (side < 0.0 ? pad.s0 : pad.s1) += side * lies;
       pad.longest = std::max(pad.longest, lies);
@@ -228,7 +220,7 @@ SurfaceNearest MeshSurface::nearest_on_face(int index, const Segment& segment) c
   const double crossing = -height / rise;
   const bool crosses = !parallel && crossing >= 0.0 && crossing <= 1.0;
   double s = parallel ? 0.5 : clamp_unit(crossing);
-  Stretch above = over(face, segment, s);
+  Interval above = over(face, segment, s);
   if (above.s0 > above.s1) return found;
   if (parallel) {
     s = above.middle();
@@ -247,14 +239,14 @@ SurfaceNearest MeshSurface::nearest_on_face(int index, const Segment& segment) c
 
 SurfaceNearest MeshSurface::nearest_on_edge(int index, const Segment& segment) const {
   const Edge& edge = edges_[index];
-  const SegmentPair nearest = nearest_stretch(segment, edge.start, edge.along);
+  const SegmentPair nearest = nearest_points(segment, edge.start, edge.along);
   SurfaceNearest found;
   if (nearest.t <= 0.0 || nearest.t >= 1.0) {
     // The same for all edges that end here.
     found.part = SurfacePart::corner;
     found.index = edge.corners[nearest.t >= 1.0 ? 1 : 0];
     found.point = corners_[found.index];
-    const double s = nearest_to(found.point, segment);
+    const double s = foot(segment.start, segment.along, found.point);
     found.stretch = {s, s};
   } else {
     found.part = SurfacePart::edge;
@@ -289,13 +281,14 @@ double MeshSurface::alignment(int part, const Vector3& direction) const {
 /// (what is locally so is so everywhere), and nothing is nearer. What is nearly on the next part is not
 /// certain: it has to be searched, so that ties go as they always do.
 bool MeshSurface::is_support(const SurfaceNearest& nearest, const Vector3& gap) const {
-  const double clear = kClear * nearest.distance;
+  const double clear = kMinClearance * nearest.distance;
   if (nearest.part == SurfacePart::face) {
     const Face& face = faces_[nearest.index];
     if (face.normal.dot(gap) <= 0.0) return false;
     for (int i = face.first; i < face.first + face.count; ++i) {
       const Side& side = sides_[i];
-      if (side.outward.dot(nearest.point) - side.reach > -kClear * side.outward.squaredNorm()) return false;
+      if (side.outward.dot(nearest.point) - side.reach > -kMinClearance * side.outward.squaredNorm())
+        return false;
     }
     return true;
   }
@@ -304,7 +297,8 @@ bool MeshSurface::is_support(const SurfaceNearest& nearest, const Vector3& gap) 
     const double length = edge.along.norm();
     const double t = edge.along.dot(nearest.point - edge.start) / (length * length);
     const std::array<Vector3, 2> normal = normals(edge);
-    return t > kClear && t < 1.0 - kClear && edge.along.cross(normal[0]).dot(gap) > clear * length &&
+    return t > kMinClearance && t < 1.0 - kMinClearance &&
+           edge.along.cross(normal[0]).dot(gap) > clear * length &&
            normal[1].cross(edge.along).dot(gap) > clear * length;
   }
   const std::size_t corner = nearest.index;

@@ -13,13 +13,19 @@ namespace mrhi {
 /// where it bends. Depends on the surface alone, not on the order of its triangles and vertices.
 struct FlatFaces {
   struct Face {
-    Vector3 normal;  ///< unit
-    double height;   ///< of the plane above the origin, along the normal [m]
+    Vector3 normal;            ///< unit
+    double height;             ///< of the plane above the origin, along the normal [m]
+    int first = 0, count = 0;  ///< sides in MeshSurface
+    bool convex = true;
   };
-  /// A straight line from corner to corner, with `face` on its left, seen from outside.
+  /// A straight line from corner to corner, with the first face on its left, seen from outside.
   struct Edge {
-    int from, to;
-    int face, other;  ///< other: -1 at the border of an open surface
+    Vector3 start, along;
+    std::array<int, 2> corners;
+    std::array<int, 2> faces;  ///< equal at the border of an open surface
+    bool bulges = false;       ///< the solid does, along it
+
+    bool is_border() const { return faces[0] == faces[1]; }
   };
 
   std::vector<Vector3> corners;
@@ -30,20 +36,20 @@ struct FlatFaces {
   bool one_piece = true;
 };
 
-/// Places that are out of a plane or a line by less than this part of the mesh's extent are on it: vertices
-/// have passed through floats. A float's half ulp is 6e-8 of a coordinate. A mesh that lies far from its own
-/// origin, against its size, has more rounding than this allows for, and is cut into more faces.
+/// Largest distance of a point on a plane or a line, as a fraction of the mesh's extent: vertices are rounded
+/// to floats, by 6e-8 of a coordinate. A mesh that is far from its origin, against its size, is cut into more
+/// faces.
 constexpr double kFlatness = 5e-7;
 
 /// Merges the triangles of each plane into one face. Throws std::invalid_argument if no triangle has an area.
 FlatFaces merge_coplanar_triangles(const TriangleMesh& mesh);
 
-/// What of a surface a segment is nearest to.
+/// Kind of feature that a segment is nearest to.
 enum class SurfacePart { face, edge, corner };
 
 struct SurfaceNearest {
   double distance = 1e300;          ///< 0 where the segment goes through the surface [m]
-  Stretch stretch;                  ///< of the segment; s0 == s1 unless it is parallel
+  Interval stretch;                 ///< of the segment; s0 == s1 unless it is parallel
   Vector3 point = Vector3::Zero();  ///< of the surface, facing the stretch's middle
   SurfacePart part = SurfacePart::face;
   int index = -1;  ///< of the face, edge or corner
@@ -54,25 +60,13 @@ struct Pad {
   double s0, s1, longest;
 };
 
-/// The surface of a triangle mesh: flat faces, the edges between them and their corners, with normals for
-/// each (Baerentzen & Aanaes 2005: the angle-weighted normal at the nearest point tells inside from outside).
-///
-/// Inside is where N.(p - nearest) < 0 with N the face's normal, the sum of an edge's two or a corner's
-/// weighted by angles: the nearest face's own normal is wrong beside corners that are sharp.
+/// The surface of a triangle mesh: flat faces, the edges between them and their corners. Inside is where
+/// N.(p - nearest) < 0, with N the face's normal, the sum of an edge's two or a corner's weighted by angles
+/// (Baerentzen & Aanaes 2005): beside sharp corners the nearest face's own normal is wrong.
 class MeshSurface {
  public:
-  struct Face {
-    Vector3 normal;
-    double height;     // n . p = height
-    int first, count;  // sides
-    bool convex;
-  };
-  struct Edge {
-    Vector3 start, along;
-    std::array<int, 2> corners;
-    std::array<int, 2> faces;  // equal at the border of an open surface
-    bool bulges;               // the solid does, along it
-  };
+  using Face = FlatFaces::Face;
+  using Edge = FlatFaces::Edge;
 
   explicit MeshSurface(const TriangleMesh& mesh);
 
@@ -112,9 +106,9 @@ class MeshSurface {
     }
   }
 
-  /// What of the segment is straight above or below the face: the part around s if the face is not convex;
-  /// empty (s0 > s1) if nothing.
-  Stretch over(const Face& face, const Segment& segment, double s) const;
+  /// Interval of the segment straight above or below the face; the one around s if the face is not convex;
+  /// empty (s0 > s1) if there is none.
+  Interval over(const Face& face, const Segment& segment, double s) const;
   /// Part of a capsule's axis on which its pad lies, around the deepest point: that of the features.
   Pad pad(const Segment& axis, const ClosestFeatures& deepest) const;
   /// Distance 1e300 if an edge of the face is nearer than its inside.
@@ -137,7 +131,7 @@ class MeshSurface {
     double reach;
     int edge;
   };
-  void add_sides(const std::vector<FlatFaces::Edge>& edges);
+  void add_sides();
   void find_bends(bool one_piece);
   /// Calls `see(face)` for the faces around a part by its number: seen from a corner, those left of its
   /// edges.
@@ -151,11 +145,11 @@ class MeshSurface {
       see(of.faces[of.corners[0] == corner ? 0 : 1]);
     }
   }
-  /// That of the faces around a part which a place beside it is over.
+  /// The face around a part that a place beside it is over.
   int face_over(int part, const Vector3& place) const;
   bool is_convex(const Face& face) const;
   bool inside(const Face& face, const Vector3& place) const;
-  Stretch around(const Face& face, const Segment& segment, double s) const;
+  Interval around(const Face& face, const Segment& segment, double s) const;
 
   std::vector<Vector3> corners_, corner_normals_;
   std::vector<Face> faces_;

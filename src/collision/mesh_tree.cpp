@@ -6,7 +6,7 @@
 namespace mrhi {
 namespace {
 
-constexpr int kLeaf = 4;
+constexpr int kMaxLeafParts = 4;
 
 /// Calls `place(p)` for what spans a part, `normal(n)` for the directions that it faces.
 template <typename Place, typename Normal>
@@ -27,10 +27,8 @@ void span(const MeshSurface& surface, int part, const Place& place, const Normal
 
 /// Its ball: |c - a(s)| - r at the foot s of c.
 double MeshTree::Node::distance(const Segment& segment) const {
-  const Vector3 offset = centre - segment.start;
-  const double squared = segment.along.squaredNorm(), along = segment.along.dot(offset);
-  const double s = along <= 0.0 ? 0.0 : (along >= squared ? 1.0 : along / squared);
-  return (offset - s * segment.along).norm() - radius;
+  return (centre - segment.start - foot(segment.start, segment.along, centre) * segment.along).norm() -
+         radius;
 }
 
 /// A part with the normal m through p is m.(p - e) above the end e. With theta <= spread the angle between m
@@ -95,7 +93,7 @@ void MeshTree::build(const MeshSurface& surface, int node, std::vector<Vector3>&
                      int last) {
   Node built{};
   bound(surface, built, first, last);
-  if (last - first <= kLeaf) {
+  if (last - first <= kMaxLeafParts) {
     built.first = first, built.count = last - first;
     nodes_[node] = built;
     return;

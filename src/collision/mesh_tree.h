@@ -6,10 +6,9 @@
 
 namespace mrhi {
 
-/// A tree over the faces and edges of a surface. Each node knows a ball, a box and a slab that hold its
-/// parts, and a cone that holds their normals. A box holds long thin faces far more closely than a ball. On a
-/// curved surface the slab is thin, and a search that knows a direction sees at once that a node is below all
-/// it has found. (Spatialized normal cones: Johnson & Cohen 2001.)
+/// A tree over the faces and edges of a surface. Each node has a ball, a box (tighter for long thin faces)
+/// and a slab (thin on a curved surface) around its parts, and a cone of their normals (spatialized normal
+/// cones: Johnson & Cohen 2001).
 class MeshTree {
  public:
   struct Node {
@@ -28,13 +27,12 @@ class MeshTree {
     }
     /// The planes of its parts are no less deep around both ends of the segment than this.
     double depth(const Segment& segment) const;
-    /// False if no part is where a straight way along its normal leads from what of the segment comes out
-    /// last.
+    /// False if no part is where a path along its normal leads from the segment's point that leaves last.
     bool may_be_exit(const Segment& segment) const;
   };
 
-  /// No branch is longer. A stack of open nodes has at most one more than there are levels, as each node that
-  /// is opened puts back two: halving by the median, 64 hold any mesh.
+  /// Enough for any mesh: a stack of open nodes has at most one more than there are levels, halved by the
+  /// median.
   static constexpr std::size_t kMaxLevels = 64;
 
   explicit MeshTree(const MeshSurface& surface);
@@ -43,7 +41,7 @@ class MeshTree {
   /// i in first..first + count of a leaf: a face, or that many and an edge.
   int part(int i) const { return parts_[i]; }
 
-  /// Visits nodes that `wanted(node)`, always in the same order; `see(part)` the parts of leaves.
+  /// Visits nodes that it `admits(node)`, always in the same order; `see(part)` the parts of leaves.
   template <typename Admits, typename See>
   void visit(const Admits& admits, const See& see) const {
     std::array<int, kMaxLevels> open;

@@ -6,6 +6,7 @@
 #include "../scene/solid_mesh.h"
 
 #include "overlap.h"
+#include "segment.h"
 
 namespace mrhi {
 
@@ -58,11 +59,11 @@ Neighbours::Neighbours(const Scene& scene)
     : scene_(scene),
       broad_phase_(scene.bodies.size()),
       padded_(scene.bodies.size()),
-      reaches_(kMaxHands),
+      hand_paths_(kMaxHands),
       near_hand_(kMaxHands) {
   for (const Body& body : scene.bodies) boxes_.push_back(box_around(body));
   for (std::vector<NearBody>& near : near_hand_) near.reserve(scene.bodies.size());
-  for (Reach& reach : reaches_) reach.paths.reserve(kCapsules);
+  for (HandPaths& reach : hand_paths_) reach.paths.reserve(kCapsules);
   pairs_.reserve(4 * scene.bodies.size());
   untouching_ = overlaps_in_mechanisms(scene);
   for (const Joint& joint : scene.joints) untouching_.emplace_back(joint.parent, joint.child);
@@ -73,14 +74,15 @@ Neighbours::Neighbours(const Scene& scene)
 
 void Neighbours::begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
                              const Carried& carried) {
-  for (std::size_t slot = 0; slot < hands.size(); ++slot) measure(hands[slot], carried[slot], reaches_[slot]);
+  for (std::size_t slot = 0; slot < hands.size(); ++slot)
+    measure(hands[slot], carried[slot], hand_paths_[slot]);
   if (place_those_leaving(bodies, 0.0)) list_pairs();
   list_near_hands(bodies);
 }
 
 /// An axis point a(s) goes from a0 to a1, and is (f - 1/2)(a1 - a0) off its place halfway at the fraction f
 /// of the frame: at most half the longer displacement of the two ends, and f (1 - f) of the longest bend.
-void Neighbours::measure(const HandTrack& hand, const CarriedFrame* carried, Reach& reach) {
+void Neighbours::measure(const HandTrack& hand, const CarriedFrame* carried, HandPaths& reach) {
   reach.box.setEmpty();
   reach.paths.clear();
   if (!hand.active) return;
@@ -89,9 +91,9 @@ void Neighbours::measure(const HandTrack& hand, const CarriedFrame* carried, Rea
     const Capsule& from = hand.previous.capsules[c].radius > 0.0 ? hand.previous.capsules[c] : to;
     if (to.radius <= 0.0) continue;
     Vector3 start = 0.5 * (from.start + to.start), end = 0.5 * (from.end + to.end);
-    const double longer_way =
+    const double displacement =
         std::sqrt(std::max((to.start - from.start).squaredNorm(), (to.end - from.end).squaredNorm()));
-    CapsulePath path{c, start, end - start, to.radius + 0.5 * longer_way + 0.25 * hand.path.longest_bend};
+    CapsulePath path{c, start, end - start, to.radius + 0.5 * displacement + 0.25 * hand.path.longest_bend};
     if (carried != nullptr) {
       const CarrierMotion& carrier = carried->motion;
       start = carrier.to_world(start);
@@ -124,13 +126,11 @@ double Neighbours::reach_of(std::size_t body, const BodyState& state, double sec
 
 /// The foot of the centre on the axis halfway, clamped in 0..1, is as near as it gets to it.
 bool Neighbours::CapsulePath::comes_near(const Vector3& centre, double radius) const {
-  const double length_squared = along.squaredNorm(), foot = along.dot(centre - start);
-  const double s = foot <= 0.0 ? 0.0 : foot >= length_squared ? 1.0 : foot / length_squared;
+  const double s = foot(start, along, centre);
   return (start + s * along - centre).squaredNorm() <= (reach + radius) * (reach + radius);
 }
 
-/// By the planes of the box's faces. A gap in any of these three directions is one (separating axes): the
-/// greatest is a bound from below, loose beside edges and corners only.
+/// Greatest gap along the box's axes: a lower bound, loose only beside edges and corners.
 double Neighbours::CapsulePath::clearance(const Eigen::AlignedBox3d& box, const Pose& pose,
                                           const Matrix3& rotation) const {
   const Vector3 half_along = 0.5 * along;
@@ -143,7 +143,7 @@ bool Neighbours::may_meet_hand(std::size_t body, const BodyState& state, double 
   const Vector3& centre = state.pose.position;
   const double radius = reach_of(body, state, seconds);
   const auto near = [&](const CapsulePath& path) { return path.comes_near(centre, radius); };
-  return std::any_of(reaches_.begin(), reaches_.end(), [&](const Reach& hand) {
+  return std::any_of(hand_paths_.begin(), hand_paths_.end(), [&](const HandPaths& hand) {
     return std::any_of(hand.paths.begin(), hand.paths.end(), near);
   });
 }
@@ -155,9 +155,8 @@ bool Neighbours::may_meet(std::size_t a, std::size_t b, const std::vector<BodySt
 }
 
 /// A body leaves if |moved| + |v| step may exceed its padding, tested as 2 (moved^2 + (v step)^2) > padding^2
-/// without a root. A body that was just placed stays: its padding contains 2 v step, and the test needs
-/// sqrt(2) v step. If one leaves, all are placed anew that have used much of their padding: in a heap one
-/// body or another would leave in nearly every step.
+/// without a root. If one leaves, all that have used much of their padding are placed anew: in a heap some
+/// body would leave in nearly every step.
 bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, double step) {
   const auto uses = [&](std::size_t b, double part) {
     const Body& body = scene_.bodies[b];
@@ -183,8 +182,8 @@ bool Neighbours::place_those_leaving(const std::vector<BodyState>& bodies, doubl
 }
 
 void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
-  for (std::size_t slot = 0; slot < reaches_.size(); ++slot) {
-    const Reach& reach = reaches_[slot];
+  for (std::size_t slot = 0; slot < hand_paths_.size(); ++slot) {
+    const HandPaths& reach = hand_paths_[slot];
     near_hand_[slot].clear();
     if (reach.paths.empty()) continue;
     for (const int body : broad_phase_.query(reach.box.min(), reach.box.max())) {
@@ -201,9 +200,8 @@ void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
   }
 }
 
-/// Sorted, as the broad phase gives them in no order: contacts are found, summed and solved in this order,
-/// and equal states must give equal bits. Bodies that share a joint may overlap there and do not touch, as do
-/// those of one mechanism that overlap where they start.
+/// Sorted, so that equal states give equal bits. Bodies that share a joint do not touch, nor do those of one
+/// mechanism that overlap where they start.
 void Neighbours::list_pairs() {
   pairs_.clear();
   for (std::pair<int, int> pair : broad_phase_.pairs()) {

@@ -28,8 +28,8 @@ inline bool is_near(const Eigen::AlignedBox3d& box, const Vector3& centre, doubl
 std::vector<int> near_bodies(const Hand& hand, const Scene& scene, const std::vector<BodyState>& bodies,
                              double margin);
 
-/// Axis-aligned boxes of bodies; finds those that a box touches. A cache of the state, not part of it. Of
-/// spheres' boxes: sound (a body is within its sphere, a sphere within its box), never exact.
+/// Tree of the axis-aligned boxes of bodies' spheres; finds those that a box touches. A cache of the state,
+/// not part of it.
 class BroadPhase {
  public:
   explicit BroadPhase(std::size_t bodies);
@@ -55,18 +55,16 @@ struct NearBody {
   int count = 0;
   Pose pose;  ///< of the body as they were listed
   std::array<std::uint8_t, kCapsules> capsules;
-  /// By which each stays off the body in this frame, were it to stay at that pose; < 0 may touch it [m].
+  /// Lower bound of each capsule's distance from the body in this frame, at that pose; < 0: may touch [m].
   std::array<double, kCapsules> clearances;
 
   void add(int capsule, double clearance) {
     capsules[count] = static_cast<std::uint8_t>(capsule);
     clearances[count++] = clearance;
   }
-  /// At most how far a point of the body, within `radius` of its frame's origin, is from where it was [m].
-  ///
-  /// Turned by theta a point moves by 2 radius sin(theta / 2) at most; the quaternions, four-vectors of
-  /// length 1 at the angle theta / 2, are 2 sin(theta / 4) apart, and sin(theta / 2) <= 2 sin(theta / 4). Of
-  /// opposite signs they are farther apart: still a bound.
+  /// Upper bound of the displacement of the body's points within `radius` of its origin [m]. A rotation by
+  /// theta moves them by 2 radius sin(theta / 2); the quaternions are 2 sin(theta / 4) >= sin(theta / 2)
+  /// apart, or more.
   double moved(const Pose& now, double radius) const {
     return (now.position - pose.position).norm() +
            2.0 * radius * (now.orientation.coeffs() - pose.orientation.coeffs()).norm();
@@ -89,23 +87,20 @@ class Neighbours {
  public:
   explicit Neighbours(const Scene& scene);  ///< keeps a reference
 
-  /// Call once a frame, with the hands' paths in it. `carried`: by slot, null for a hand that is tracked in
-  /// world.
+  /// Call once a frame, with the hands' paths in it. `carried`: by slot, null for a hand tracked in world.
   using Carried = std::array<const CarriedFrame*, kMaxHands>;
   void begin_frame(const std::vector<HandTrack>& hands, const std::vector<BodyState>& bodies,
                    const Carried& carried = {});
   /// Call for every step of `step` seconds.
   void begin_step(const std::vector<BodyState>& bodies, double step);
 
-  /// True if a body may come near a hand of this frame, or two bodies near each other, within `seconds`. Uses
-  /// positions and velocities, not the lists.
+  /// True if a body may come near a hand of this frame, or two bodies near each other, within `seconds`.
   bool may_meet_hand(std::size_t body, const BodyState& state, double seconds) const;
   bool may_meet(std::size_t a, std::size_t b, const std::vector<BodyState>& bodies, double seconds) const;
 
   /// Bodies near the hand in `slot`, ascending.
   const std::vector<NearBody>& near_hand(int slot) const { return near_hand_[slot]; }
-  /// Pairs of bodies near each other, sorted. The first is a fixture or listed before the second, which is
-  /// free.
+  /// Pairs of bodies near each other, sorted. The first is a fixture or precedes the second, which is free.
   const std::vector<std::pair<int, int>>& pairs() const { return pairs_; }
   /// Bodies that are in any of the pairs.
   const std::vector<int>& paired() const { return paired_; }
@@ -125,13 +120,12 @@ class Neighbours {
     Vector3 start, along;
     double reach;
   };
-  struct Reach {
+  struct HandPaths {
     Eigen::AlignedBox3d box;  // of a hand in this frame; empty without a hand
     std::vector<CapsulePath> paths;
   };
-  static void measure(const HandTrack& hand, const CarriedFrame* carried, Reach& reach);
-  /// Radius about where the body is now that it does not leave within `seconds`, with the gap that is
-  /// followed.
+  static void measure(const HandTrack& hand, const CarriedFrame* carried, HandPaths& reach);
+  /// Radius that the body and the followed gap do not leave within `seconds`, about its position now.
   double reach_of(std::size_t body, const BodyState& state, double seconds) const;
   bool place_those_leaving(const std::vector<BodyState>& bodies, double step);
   void list_near_hands(const std::vector<BodyState>& bodies);
@@ -141,7 +135,7 @@ class Neighbours {
   BroadPhase broad_phase_;
   std::vector<Eigen::AlignedBox3d> boxes_;
   std::vector<PaddedSphere> padded_;
-  std::vector<Reach> reaches_;
+  std::vector<HandPaths> hand_paths_;
   std::vector<std::vector<NearBody>> near_hand_;
   std::vector<std::pair<int, int>> pairs_, untouching_;  // sorted
   std::vector<char> is_paired_;                          // by body

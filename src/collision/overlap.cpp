@@ -28,17 +28,17 @@ bool are_joined(const Scene& scene, std::size_t a, std::size_t b) {
 }
 
 /// About a body, in its frame. Of meshes their colliders know the box: fine ones have many vertices.
-Eigen::AlignedBox3d quick_box(const Body& body, const std::vector<ManifoldShape>& shapes) {
+Eigen::AlignedBox3d quick_box(const Body& body, const std::vector<PlacedCollider>& shapes) {
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const PlacedShape& placed = body.shapes[i];
+    const Pose& pose = shapes[i].pose;
     if (shapes[i].mesh == nullptr) {
-      box.extend(box_around(placed));
+      box.extend(box_around(body.shapes[i]));
       continue;
     }
     const Eigen::AlignedBox3d& own = shapes[i].mesh->shape().surface.bounds();
-    const Vector3 centre = placed.pose * Vector3(own.center()),
-                  half = 0.5 * (placed.pose.orientation.toRotationMatrix().cwiseAbs() * own.sizes());
+    const Vector3 centre = pose * Vector3(own.center()),
+                  half = 0.5 * (pose.orientation.toRotationMatrix().cwiseAbs() * own.sizes());
     box.extend(Eigen::AlignedBox3d(centre - half, centre + half));
   }
   return box;
@@ -61,7 +61,7 @@ bool are_apart(const Eigen::AlignedBox3d& a, const Pose& pose_a, const Eigen::Al
 /// A body's union of shapes, as a place in world sees it.
 struct Solid {
   const Body& body;
-  const std::vector<ManifoldShape>& shapes;
+  const std::vector<PlacedCollider>& shapes;
   const Pose& pose;
   SearchBudget& budget;
 
@@ -70,27 +70,25 @@ struct Solid {
     Vector3 inward;  // unit, world
   };
   Depth at(const Vector3& place) const {
-    constexpr double kFar = 1e3;  // [m]
-    Depth deepest{-kFar, Vector3::UnitZ()};
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-      const Pose in_world = pose * body.shapes[i].pose;
+    constexpr double kMaxDistance = 1e3;  // [m]
+    Depth deepest{-kMaxDistance, Vector3::UnitZ()};
+    for (const PlacedCollider& shape : shapes) {
+      const Pose in_world = pose * shape.pose;
       const Vector3 local = in_world.to_local(place);
-      const ClosestFeatures found = closest_on(shapes[i].shape, shapes[i].mesh, {local, local, 0.0}, kFar);
-      budget.spend(search_work(shapes[i], found.distance));
-      if (-found.distance > deepest.depth)
-        deepest = {-found.distance, in_world.orientation * Vector3(-found.normal)};
+      const auto found = shape.closest({local, local, 0.0}, kMaxDistance);
+      budget.spend(search_work(shape, found ? found->distance : kMaxDistance));
+      if (found && -found->distance > deepest.depth)
+        deepest = {-found->distance, in_world.orientation * Vector3(-found->normal)};
     }
     return deepest;
   }
 };
 
 /// Diameter of the largest ball found inside both bodies, a lower bound of their overlap [m].
-///
-/// The search starts from points all over the first body, next to its centre first, and moves into the body
-/// in which it is less deep by half the difference of both depths, which leads to the middle of a layer
-/// between two flat faces. From the centre itself a round surface would be as near everywhere, so that a
-/// search for the nearest part would look at all. A manifold's depth, between corners and edges, does not
-/// detect coinciding faces.
+/// The search starts from points all over the first body, and moves into the body in which it is less deep by
+/// half the difference of both depths: to the middle of a layer between two flat faces. It begins beside the
+/// centre, as from there a round surface is equally near everywhere, which makes searches slow. A manifold's
+/// depth, between corners and edges, does not detect coinciding faces.
 double common_ball(const Solid& a, const Solid& b) {
   constexpr int kAcross = 5, kMaxSteps = 16;
   const Eigen::AlignedBox3d box = quick_box(a.body, a.shapes);
@@ -121,21 +119,20 @@ double common_ball(const Solid& a, const Solid& b) {
 
 /// Half of the largest wall that is thin [m]. In those of kOverlap and more, common_ball() finds what two
 /// bodies share.
-constexpr double kThin = 0.55 * kOverlap;
+constexpr double kMaxHalfWall = 0.55 * kOverlap;
 
 /// Whether the wall behind a place on the surface of `solid` lies in the other body; nothing if it is thick.
-///
-/// The place moves in along the normal as long as it gets as much deeper, which is to the middle of the wall.
-/// An open surface has no inside: there the place itself lies on that of the other.
+/// The place moves inwards while it gets deeper, to the middle of the wall. On an open surface it must itself
+/// lie on the other's.
 std::optional<bool> is_wall_shared(const Solid& solid, const Vector3& place, const Vector3& inward,
                                    bool is_closed, const Solid& other) {
   constexpr int kSteps = 5;
-  constexpr double kStraight = 0.95, kCoincides = 1e-6;  // ratio, [m]
-  if (!is_closed) return std::abs(other.at(place).depth) < kCoincides;
+  constexpr double kMinDepthRatio = 0.95, kCoincidence = 1e-6;  // ratio, [m]
+  if (!is_closed) return std::abs(other.at(place).depth) < kCoincidence;
   double depth = 0.0;
   for (int step = 1; step <= kSteps; ++step) {
-    const double next = step * kThin / kSteps;
-    if (solid.at(place + next * inward).depth < kStraight * next) break;
+    const double next = step * kMaxHalfWall / kSteps;
+    if (solid.at(place + next * inward).depth < kMinDepthRatio * next) break;
     if (step == kSteps) return std::nullopt;
     depth = next;
   }
@@ -147,13 +144,13 @@ std::optional<bool> is_wall_shared(const Solid& solid, const Vector3& place, con
 /// meshes.
 bool shares_walls(const Solid& solid, const Solid& other) {
   constexpr std::size_t kSamples = 24;
-  constexpr int kLeastThin = 12;
-  constexpr double kMost = 0.5;
-  for (std::size_t i = 0; i < solid.shapes.size(); ++i) {
-    if (solid.shapes[i].mesh == nullptr) continue;
-    const TriangleMesh& mesh = *std::get<Mesh>(solid.shapes[i].shape).triangles;
-    const bool is_closed = solid.shapes[i].mesh->shape().surface.closed();
-    const Pose in_world = solid.pose * solid.body.shapes[i].pose;
+  constexpr int kMinThinWalls = 12;
+  constexpr double kMinSharedRatio = 0.5;
+  for (const PlacedCollider& shape : solid.shapes) {
+    if (shape.mesh == nullptr) continue;
+    const TriangleMesh& mesh = *std::get<Mesh>(shape.shape).triangles;
+    const bool is_closed = shape.mesh->shape().surface.closed();
+    const Pose in_world = solid.pose * shape.pose;
     int thin = 0, shared = 0;
     for (std::size_t k = 0; k < kSamples && solid.budget.left > 0.0; ++k) {
       const auto& triangle = mesh.triangles[sampled(k, mesh.triangles.size())];
@@ -168,33 +165,31 @@ bool shares_walls(const Solid& solid, const Solid& other) {
       ++thin;
       if (*is_shared) ++shared;
     }
-    if (thin >= kLeastThin && shared > kMost * thin) return true;
+    if (thin >= kMinThinWalls && shared > kMinSharedRatio * thin) return true;
   }
   return false;
 }
 
-bool has_mesh(const Body& body) {
-  return std::any_of(body.shapes.begin(), body.shapes.end(),
-                     [](const PlacedShape& placed) { return std::holds_alternative<Mesh>(placed.shape); });
+bool has_mesh(const Solid& solid) {
+  return std::any_of(solid.shapes.begin(), solid.shapes.end(),
+                     [](const PlacedCollider& shape) { return shape.mesh != nullptr; });
 }
 
 }  // namespace
 
-/// The deepest point of all pairs of shapes. Each is of two shapes alone: a body that has several may have to
-/// go farther to be out.
+/// The deepest point of all pairs of shapes; a body of several may have to move farther.
 Overlap overlap(const Scene& scene, const SceneGeometry& geometry, const std::vector<BodyState>& bodies,
                 std::size_t a, std::size_t b, SearchBudget& budget) {
   Overlap found;
-  if (are_apart(quick_box(scene.bodies[a], geometry.shapes[a]), bodies[a].pose,
-                quick_box(scene.bodies[b], geometry.shapes[b]), bodies[b].pose))
+  const Solid of_a{scene.bodies[a], geometry.colliders[a], bodies[a].pose, budget},
+      of_b{scene.bodies[b], geometry.colliders[b], bodies[b].pose, budget};
+  if (are_apart(quick_box(of_a.body, of_a.shapes), of_a.pose, quick_box(of_b.body, of_b.shapes), of_b.pose))
     return found;
-  if (has_mesh(scene.bodies[a]) || has_mesh(scene.bodies[b])) {
-    const Solid of_a{scene.bodies[a], geometry.shapes[a], bodies[a].pose, budget},
-        of_b{scene.bodies[b], geometry.shapes[b], bodies[b].pose, budget};
+  if (has_mesh(of_a) || has_mesh(of_b)) {
     const bool smaller = of_a.body.bounding_radius < of_b.body.bounding_radius;
     const Solid &first = smaller ? of_a : of_b, &second = smaller ? of_b : of_a;
-    constexpr double kForWalls = 0.3;  // of the budget
-    const double for_walls = kForWalls * budget.left;
+    constexpr double kWallFraction = 0.3;  // of the budget
+    const double for_walls = kWallFraction * budget.left;
     budget.left -= for_walls;
     found.depth = common_ball(first, second);
     budget.left += for_walls;
@@ -202,11 +197,10 @@ Overlap overlap(const Scene& scene, const SceneGeometry& geometry, const std::ve
     found.shares_walls = shares_walls(first, second) || shares_walls(second, first);
     if (found.shares_walls) return found;
   }
-  for (std::size_t i = 0; i < scene.bodies[a].shapes.size(); ++i) {
-    for (std::size_t j = 0; j < scene.bodies[b].shapes.size(); ++j) {
-      const Manifold manifold = body_manifold(
-          geometry.shapes[a][i], bodies[a].pose * scene.bodies[a].shapes[i].pose, geometry.shapes[b][j],
-          bodies[b].pose * scene.bodies[b].shapes[j].pose, 0.0, kAnyBreadth, &budget);
+  for (const PlacedCollider& one : of_a.shapes) {
+    for (const PlacedCollider& other : of_b.shapes) {
+      const Manifold manifold =
+          body_manifold(one, of_a.pose * one.pose, other, of_b.pose * other.pose, 0.0, kAnyBreadth, &budget);
       for (const ManifoldPoint& point : manifold) found.depth = std::max(found.depth, point.depth);
     }
   }
@@ -256,14 +250,14 @@ void each_overlap(const Scene& scene, bool in_mechanisms, const See& see) {
 }  // namespace
 
 std::string overlaps_at_start(const Scene& scene) {
-  constexpr int kNamed = 5;
+  constexpr int kMaxNamed = 5;
   std::string all;
   int named = 0;
   each_overlap(scene, false, [&](std::size_t a, std::size_t b, const Overlap& found) {
     all += (all.empty() ? "'" : ", '") + scene.bodies[a].name + "' is " +
            (found.shares_walls ? "inside thin walls of '" : text::number(found.depth) + " m in '") +
            scene.bodies[b].name + "'";
-    return ++named < kNamed;
+    return ++named < kMaxNamed;
   });
   return all;
 }

@@ -8,9 +8,8 @@
 
 namespace mrhi {
 
-/// A form placed in world, as a search over directions sees it: `reach` is the support function h(n), the
-/// extent from the centre along a unit n; `farthest` is where that is, relative to the centre. Symmetric
-/// about its centre.
+/// A prism placed in world, by its support function `reach` h(n), the extent from the centre along a unit n,
+/// and its support point `farthest`, relative to the centre. Symmetric about its centre.
 struct Prism {
   Prism(const PrismForm& form, const Pose& pose)
       : centre(pose.position),
@@ -18,8 +17,7 @@ struct Prism {
         half(form.half),
         round(form.round) {}
 
-  /// Axes from here to 2 have flat faces at their ends, and straight lines on the surface along them. A
-  /// disc's two axes across are of no account: only z remains.
+  /// Axes from here to 2 have flat faces at their ends and straight lines along them: of a disc only z.
   int first_flat() const { return round ? 2 : 0; }
   Vector3 axis() const { return axes.col(2); }
   Vector3 across(const Vector3& n) const { return n - axes.col(2).dot(n) * axes.col(2); }
@@ -33,8 +31,7 @@ struct Prism {
     return half.x() * local.head<2>().norm() + half.z() * std::abs(local.z());
   }
   /// The gradient of h: h(n) = n.farthest(n). Where it is not unique (n along a face, or along a disc's axis)
-  /// it is the corner on the positive sides, or the cap's middle: always the same, not always the middle of
-  /// what is level.
+  /// it is the corner on the positive sides, or the cap's middle.
   Vector3 farthest(const Vector3& n) const {
     const Vector3 local = axes.transpose() * n;
     Vector3 place = (local.array() < 0.0).select(-half, half);
@@ -150,7 +147,7 @@ class ConvexAxis {
       const Vector3 gradient = across(n);
       if (gradient.norm() < 1e-15) break;
       Vector3 step = ascent(n, gradient);
-      if (step.norm() > kLongest) step *= kLongest / step.norm();
+      if (step.norm() > kMaxStep) step *= kMaxStep / step.norm();
       const double before = at(n);
       Vector3 next = (n + step).normalized();
       for (int halvings = 0; halvings < 8 && at(next) <= before; ++halvings) {
@@ -166,9 +163,9 @@ class ConvexAxis {
   }
 
  private:
-  static constexpr double kBetter =
+  static constexpr double kMinImprovement =
       1e-10;                               // later tries must beat earlier ones by this: faces come first [m]
-  static constexpr double kLongest = 0.3;  // [rad]
+  static constexpr double kMaxStep = 0.3;  // [rad]
   static constexpr int kSteps = 12;
   static constexpr double kStep = 0.2617993877991494;  // pi / kSteps
   static constexpr double kCosine = 0.9659258262890683, kSine = 0.25881904510252074;
@@ -184,7 +181,7 @@ class ConvexAxis {
     take(separation, n);
   }
   void take(double separation, const Vector3& n) {
-    if (separation > separation_ + kBetter) separation_ = separation, normal_ = n;
+    if (separation > separation_ + kMinImprovement) separation_ = separation, normal_ = n;
   }
   double at(const Vector3& n) const { return n.dot(offset_) - a_.reach(n) - b_.reach(n); }
   /// From b's farthest point to a's.
@@ -221,7 +218,7 @@ class ConvexAxis {
       now = turned(from, std::cos(angle), std::sin(angle));
       (now.slope > 0.0 ? low : high) = now;
       (now.slope > 0.0 ? lo : hi) = angle;
-      if (bound(low, high, hi - lo) < separation_ + kBetter) return;
+      if (bound(low, high, hi - lo) < separation_ + kMinImprovement) return;
       const double curvature = now.value + now.turn.dot((a_.bend(now.n) + b_.bend(now.n)) * now.turn);
       double next = angle + now.slope / curvature;
       if (!(curvature > 0.0 && next > lo && next < hi)) next = 0.5 * (lo + hi);
@@ -242,7 +239,7 @@ class ConvexAxis {
     if (det > 1e-12 * (uu * uu + vv * vv) && uu + vv > 0.0) {
       return (vv * gu - uv * gv) / det * u + (uu * gv - uv * gu) / det * v;
     }
-    return kLongest / gradient.norm() * gradient;
+    return kMaxStep / gradient.norm() * gradient;
   }
 
   const Prism& a_;

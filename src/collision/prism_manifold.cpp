@@ -135,7 +135,7 @@ Manifold line_on_line(const Line& a, const Line& b, const Vector3& normal, int f
 namespace {
 
 /// Largest component along an edge or side of a direction that it faces.
-constexpr double kFaces = 1e-6, kAlmostFaces = 0.01;
+constexpr double kMaxAcross = 1e-6, kMaxAlmostAcross = 0.01;
 constexpr double kAnyDistance = 1e300;
 /// Names of two points at which lines touch.
 constexpr int kSides = 200;
@@ -216,7 +216,7 @@ int name_of(const Line& on_a, const Line& on_b) {
 /// -separation, at the deepest point: between lines that are not quite square to n it would come out less.
 Manifold lines_or_point(const Prism& a, const Prism& b, const Vector3& normal, double separation) {
   Manifold manifold;
-  for (const double tolerance : {kAlmostFaces, kFaces}) {
+  for (const double tolerance : {kMaxAlmostAcross, kMaxAcross}) {
     const Line on_a = line_facing(a, -normal, tolerance, a.axis());
     const Line on_b = line_facing(b, normal, tolerance, a.axis());
     manifold = line_on_line(on_a, on_b, normal, kSides);
@@ -232,7 +232,7 @@ Manifold lines_or_point(const Prism& a, const Prism& b, const Vector3& normal, d
 /// of it. Of prisms that is the normal of a flat face (try_flats), a direction across a straight line of each
 /// (which is all for two on rectangles: Gottschalk, Lin & Manocha 1996), across one line and a side or a rim,
 /// or rim on rim, which has no closed form: it is climbed from several starts. Faces come first and must be
-/// beaten by kBetter, so that a face's normal stays as long as it is as good.
+/// beaten by kMinImprovement, so that a face's normal stays as long as it is as good.
 class Search {
  public:
   Search(const ManifoldShape& shape_a, const Prism& a, const Prism& b, double margin)
@@ -272,8 +272,8 @@ class Search {
     for (int i = 0; i < kEdges && !is_beyond(); ++i) {
       const auto [low, high] = edge_ends(i);
       const Capsule edge{corners[low], corners[high], 0.0};
-      const ClosestFeatures features = closest_on(shape_a_.shape, shape_a_.mesh, edge, kAnyDistance);
-      if (features.distance > 0.0) axis_.try_direction(turn_a * features.normal);
+      const auto features = shape_a_.closest(edge, kAnyDistance);
+      if (features->distance > 0.0) axis_.try_direction(turn_a * features->normal);
     }
   }
   /// Starts: the line of centres, aslant from either axis towards the other (where a rim is), and either of

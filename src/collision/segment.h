@@ -7,13 +7,11 @@
 
 namespace mrhi {
 
-/// Components of a segment below this are zero: it is parallel, or a point [m].
-/// The constructor sets components below it to 0, so that later code can test for exact zeros. It is a
-/// length, not an angle: a rise of 1e-12 m is some thousand times the rounding of coordinates near 1 m.
+/// Components of a segment below this are set to 0 [m], so that later code can test for exact zeros: some
+/// thousand times the rounding of coordinates near 1 m.
 constexpr double kParallel = 1e-12;
-/// Largest distance of an axis that lies on a surface: the direction between them would be rounding [m]. The
-/// distance comes out of a difference of coordinates near 1 m, right to some 1e-16 m: at 1e-11 m a direction
-/// made of it is still right to 1e-5 rad.
+/// Largest distance of an axis that lies on a surface [m]: of coordinates near 1 m, rounded to some 1e-16 m,
+/// a direction at 1e-11 m is still right to 1e-5 rad.
 constexpr double kOnSurface = 1e-11;
 
 /// A capsule's axis start + s * along, s in 0..1, with along's rounding taken off.
@@ -39,22 +37,21 @@ inline double excess(double x, double half) {
   return std::abs(beyond) < 1e-15 ? 0.0 : beyond;
 }
 
-/// A part of a segment.
-struct Stretch {
+/// Interval of a segment's parameter.
+struct Interval {
   double s0 = 0.0, s1 = 1.0;
 
   double middle() const { return std::max(0.0, std::min(0.5 * (s0 + s1), 1.0)); }
-  /// Clips to |x0 + s * dx| <= half. Returns early if both ends are within, as the quotients below could cut
-  /// an end off by an ulp. Nothing is left of a level segment beside the slab.
+  /// Clips to |x0 + s * dx| <= half. Returns early if both ends are within, as the quotients could cut an end
+  /// off by an ulp.
   void clip_to_slab(double x0, double dx, double half) {
     if (std::abs(x0) <= half && std::abs(x0 + dx) <= half) return;
     if (dx == 0.0 && std::abs(x0) > half + kOnSurface) s0 = 1.0, s1 = 0.0;
     clip(-x0, -dx, half), clip(x0, dx, half);
   }
-  /// Keeps what is no farther than `radius` from the z axis. |x + s d|^2 = r^2, seen along z, has the roots
-  /// s = f -+ sqrt((r^2 - m^2) / d^2) about the foot f = -x.d / d^2 of the middle, where the line misses it
-  /// by m. Without the foot the root would be of b^2 - a c, in which far starts cancel. Of a line that misses
-  /// the disc the foot alone is kept.
+  /// Clips to within `radius` of the z axis. |x + s d|^2 = r^2, seen along z, has the roots s = f -+
+  /// sqrt((r^2 - m^2) / d^2) about the foot f = -x.d / d^2, where the line misses z by m: without the foot,
+  /// far starts would cancel. Of a line that misses the disc the foot alone is kept.
   void clip_to_disc(const Segment& axis, double radius) {
     const Eigen::Vector2d start = axis.start.head<2>(), along = axis.along.head<2>();
     const double along_squared = along.squaredNorm();
@@ -65,7 +62,7 @@ struct Stretch {
     s0 = std::max(s0, nearest - half_chord);
     s1 = std::min(s1, nearest + half_chord);
   }
-  /// Keeps what has x0 + s * dx <= bound.
+  /// Clips to x0 + s * dx <= bound.
   void clip(double x0, double dx, double bound) {
     if (dx > 0.0) s1 = std::min(s1, (bound - x0) / dx);
     if (dx < 0.0) s0 = std::max(s0, (bound - x0) / dx);
@@ -100,7 +97,7 @@ class ConvexMinimum {
   double lo() const { return lo_; }
   double hi() const { return hi_; }
 
-  /// The minimum, if the slope is linear between the places given.
+  /// The minimum, if the slope is linear between the added points.
   double linear() const {
     if (hi_ <= 0.0) return 0.0;
     if (lo_ >= 1.0) return 1.0;
@@ -112,7 +109,7 @@ class ConvexMinimum {
   void zero(double s) { flat_.s0 = std::min(flat_.s0, s), flat_.s1 = std::max(flat_.s1, s); }
 
   double lo_ = 0.0, hi_ = 1.0, slope_lo_, slope_hi_;
-  Stretch flat_{2.0, -1.0};
+  Interval flat_{2.0, -1.0};
 };
 
 /// A unit vector across v, the same for the same v; v may be zero. e - (e.v) v / v^2 of the unit axis e that
@@ -132,10 +129,16 @@ inline double clamp_unit(double x) {
   return std::max(0.0, std::min(x, 1.0));
 }
 
+/// Parameter 0..1 of the point of start + s * along that is nearest to `point`; 0.5 if along is zero.
+inline double foot(const Vector3& start, const Vector3& along, const Vector3& point) {
+  const double squared = along.squaredNorm();
+  return squared == 0.0 ? 0.5 : clamp_unit(along.dot(point - start) / squared);
+}
+
 /// Nearest points of a segment and an edge.
 struct SegmentPair {
-  Stretch stretch;  ///< of the segment
-  double t;         ///< along the edge, facing the stretch's middle
+  Interval stretch;  ///< of the segment
+  double t;          ///< along the edge, facing the stretch's middle
 };
 
 /// Of the segment and the edge from `corner` along `edge`, which has a length (Ericson, Real-Time Collision
@@ -147,7 +150,7 @@ struct SegmentPair {
 /// The determinant a e - b^2 is |d1 x d2|^2 (Lagrange), but cancels below some 1e-8 rad: so the cross product
 /// says what is parallel. Between the two s may come out anywhere, even as no number, which clamp_unit makes
 /// 0; the alternating projections then still end at one of many nearest pairs.
-inline SegmentPair nearest_stretch(const Segment& segment, const Vector3& corner, const Vector3& edge) {
+inline SegmentPair nearest_points(const Segment& segment, const Vector3& corner, const Vector3& edge) {
   const Vector3 offset = segment.start - corner, &along = segment.along;
   const double a = along.squaredNorm(), e = edge.squaredNorm(), b = along.dot(edge);
   const double c = along.dot(offset), f = edge.dot(offset);

@@ -103,7 +103,7 @@ ClosestFeatures leave_by_face(const Segment& axis, const Vector3& half, const Bo
   const int i = exit.dimension;
   double s = exit.normal[i] * axis.along[i] > 0.0 ? 0.0 : 1.0;
   if (axis.along[i] == 0.0) {
-    Stretch over;
+    Interval over;
     for (const int j : {(i + 1) % 3, (i + 2) % 3}) over.clip_to_slab(axis.start[j], axis.along[j], half[j]);
     s = over.middle();
   }
@@ -121,8 +121,7 @@ ClosestFeatures leave_by_edge(const Segment& axis, const Vector3& half, const Bo
   for (int j = 0; j < 3; ++j) edge[j] = exit.normal[j] < 0.0 ? -half[j] : half[j];
   Vector3 across = axis.along;
   across[i] = 0.0;
-  double s = across.dot(edge - axis.start) / across.squaredNorm();
-  s = std::max(0.0, std::min(s, 1.0));
+  const double s = foot(axis.start, across, edge);
   edge[i] = std::max(-half[i], std::min(axis.at(s)[i], half[i]));
   return {exit.separation, exit.normal, edge, s};
 }
@@ -164,7 +163,7 @@ AxisSpan Box::span(const Capsule& capsule, const ClosestFeatures& features) cons
   const Segment axis(capsule);
   if (axis.along.isZero(0.0)) return at_point(features);
   int across = 0;
-  Stretch stretch;
+  Interval stretch;
   for (int i = 0; i < 3; ++i) {
     if (std::abs(features.normal[i]) > kSameNormal) {
       ++across;

@@ -106,7 +106,7 @@ ClosestFeatures leave_by_cap(const Segment& axis, const Cylinder& cylinder) {
   const double middle = axis.middle().z(), side = middle < 0.0 ? -1.0 : 1.0;
   double s = side * axis.along.z() > 0.0 ? 0.0 : 1.0;
   if (axis.along.z() == 0.0) {
-    Stretch over;
+    Interval over;
     over.clip_to_disc(axis, cylinder.radius);
     s = over.middle();
   }
@@ -126,7 +126,7 @@ ClosestFeatures leave_by_side(const Segment& axis, const Cylinder& cylinder) {
   if (along_squared > 0.0) {
     s = std::max(0.0, std::min(-start.dot(along) / along_squared, 1.0));
   } else {
-    Stretch beside;
+    Interval beside;
     beside.clip_to_slab(axis.start.z(), axis.along.z(), cylinder.half_length);
     s = beside.middle();
   }
@@ -152,8 +152,7 @@ ClosestFeatures leave_by_rim(const Segment& axis, const Cylinder& cylinder) {
   ConvexAxis search(place, solid);
   search.try_around(axis.along.normalized());
   const Vector3 point = solid.farthest(search.normal());
-  const double s = (point - axis.start).dot(axis.along) / axis.along.squaredNorm();
-  return {search.separation(), search.normal(), point, std::max(0.0, std::min(s, 1.0))};
+  return {search.separation(), search.normal(), point, foot(axis.start, axis.along, point)};
 }
 
 /// The shortest translation that takes a segment, which overlaps the cylinder, out of it: distance <= 0. The
@@ -193,7 +192,7 @@ AxisSpan Cylinder::span(const Capsule& capsule, const ClosestFeatures& features)
   const Segment axis(capsule);
   if (axis.along.isZero(0.0)) return at_point(features);
   if (features.normal.head<2>().norm() <= kSameNormal) {
-    Stretch stretch;
+    Interval stretch;
     stretch.clip_to_disc(axis, radius);
     return over(stretch, features);
   }

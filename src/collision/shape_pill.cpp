@@ -9,7 +9,7 @@ namespace mrhi {
 ClosestFeatures Pill::closest(const Capsule& capsule, double) const {
   const Segment axis(capsule);
   const SegmentPair nearest =
-      nearest_stretch(axis, -half_length * Vector3::UnitZ(), 2.0 * half_length * Vector3::UnitZ());
+      nearest_points(axis, -half_length * Vector3::UnitZ(), 2.0 * half_length * Vector3::UnitZ());
   const double s = nearest.stretch.middle();
   const Vector3 on_axis = (2.0 * nearest.t - 1.0) * half_length * Vector3::UnitZ();
   const Vector3 gap = axis.at(s) - on_axis;

@@ -6,9 +6,7 @@ namespace mrhi {
 /// |a(s)| less both radii, along a(s). Through the centre every direction across the axis is as short.
 ClosestFeatures capsule_sphere(const Capsule& capsule, const Sphere& sphere) {
   const Segment axis(capsule);
-  const double length_squared = axis.along.squaredNorm();
-  const double s =
-      length_squared > 0.0 ? std::max(0.0, std::min(-axis.start.dot(axis.along) / length_squared, 1.0)) : 0.5;
+  const double s = foot(axis.start, axis.along, Vector3::Zero());
   const Vector3 axis_point = axis.at(s);
   const double distance = axis_point.norm();
   const Vector3 normal = distance > kOnSurface ? Vector3(axis_point / distance) : any_normal(axis.along);

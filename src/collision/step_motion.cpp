@@ -22,8 +22,7 @@ MovingBody::MovingBody(const Body& of, const BodyState& state, const Vector3& gr
 }
 
 ///     x(t) = x + v t + g t^2 / 2,   R(t) = exp(t [w]x) R
-/// w is kept for the step, though a body that spins about none of its main axes tumbles: good enough for
-/// where it first touches; flight itself is integrated elsewhere.
+/// w is constant in the step, although the body may tumble: this is only for the first touch.
 Pose MovingBody::at(double time) const {
   const double angle = twist.angular.norm() * time;
   Pose result{pose.position + time * (twist.linear + 0.5 * time * acceleration), pose.orientation};
@@ -48,7 +47,7 @@ void CarrierMotion::carry(const Vector3& point, PhalanxMotion& motion) const {
 /// it is.
 HandMotion::HandMotion(const HandTrack& track, int slot, double seconds)
     : seconds_(seconds),
-      emerged_(track.emerged),
+      spawned_(track.emerged),
       palm_from_(track.previous.palm.orientation.toRotationMatrix()),
       turn_start_bend_(track.path.start_bend.turn),
       turn_end_bend_(track.path.end_bend.turn) {
@@ -89,7 +88,7 @@ Matrix3 HandMotion::palm_orientation(double fraction) const {
 void HandMotion::move_to(double fraction, double until) {
   hand_.place = PathWeights::at(fraction);
   hand_.rate = PathWeights::between(fraction, until, seconds_);
-  hand_.emerged = emerged_ && fraction == 0.0;
+  hand_.spawned = spawned_ && fraction == 0.0;
   hand_.palm = palm_orientation(fraction);
   hand_.palm_spin = hand_.rate(palm_turn_, turn_start_bend_, turn_end_bend_);
   const CarrierMotion* carrier = hand_.carrier;

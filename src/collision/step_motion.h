@@ -17,8 +17,6 @@ struct MovingBody {
   /// Velocity, at that time, of its point that is `arm` off its centre [m/s].
   Vector3 velocity(double time, const Vector3& arm) const;
 
-  /// x_world = R x + p, and back by R^T: the matrix is made once, where a quaternion would be turned into it
-  /// for every point.
   Vector3 to_world(const Vector3& local) const { return rotation * local + pose.position; }
   Vector3 to_local(const Vector3& world) const { return rotation.transpose() * (world - pose.position); }
   Capsule to_local(const Capsule& world) const {
@@ -33,22 +31,17 @@ struct MovingBody {
   bool appeared;         ///< as this step began
 };
 
-/// Motion of a phalanx: its ends as given, its spin about its own axis as the palm's.
-///
-/// The two ends' velocities v0, v1 give five of the six numbers of a rigid motion: v1 - v0 = w x a gives the
-/// part of w across the axis a,
-///     swing = a x (v1 - v0) / a^2,
-/// as a x (w x a) = a^2 w - (a.w) a. A change of length along a drops out. The spin about a cannot be seen
-/// from the ends: spin = swing + (a.w_palm) a / a^2.
+/// Motion of a phalanx by the velocities v0, v1 of its ends. v1 - v0 = w x a gives the angular velocity
+/// across the axis a, swing = a x (v1 - v0) / a^2. About the axis it is the palm's: spin = swing + (a.w_palm)
+/// a / a^2.
 struct PhalanxMotion {
   Vector3 axis;                     ///< from start to end [m]
   Vector3 velocity;                 ///< of the start [m/s]
   Vector3 spread;                   ///< of the end against the start [m/s]
-  Vector3 swing = Vector3::Zero();  ///< angular velocity across the axis, as the ends tell [rad/s]
-  Vector3 spin;                     ///< the same with what the palm tells about the axis [rad/s]
+  Vector3 swing = Vector3::Zero();  ///< angular velocity across the axis [rad/s]
+  Vector3 spin;                     ///< the same with that about the axis [rad/s]
 
-  /// Velocity of the surface point axis_point(s) + offset (Eq. 7 for a segment; spin about the capsule's own
-  /// axis is not observed) [m/s].
+  /// Velocity of the surface point axis_point(s) + offset, without spin about the axis (Eq. 7) [m/s].
   Vector3 of_surface(double s, const Vector3& offset) const {
     return velocity + s * spread + swing.cross(offset);
   }
@@ -75,9 +68,8 @@ struct EndPath {
   Vector3 displacement(const PathWeights& weights) const { return weights(chord, start_bend, end_bend); }
 };
 
-/// The capsules of one hand through a frame: their ends follow a HandPath from step to step, and move on the
-/// chord of that path within a step. A point of an axis moves by a mean of its ends' velocities, so that none
-/// is faster than the faster end.
+/// The capsules of one hand through a frame. Their ends follow a HandPath from step to step, and the chord of
+/// that path within a step.
 struct MovingHand {
   int slot = 0;                          ///< of the track
   std::array<EndPath, kCapsules> start;  ///< of each capsule
@@ -88,7 +80,7 @@ struct MovingHand {
   // At the step's start.
   PathWeights place{};                  ///< displacement since the frame's start
   PathWeights rate{};                   ///< mean velocity in the step [1/s]
-  bool emerged = false;                 ///< first step since the hand appeared: what it overlaps is ignored
+  bool spawned = false;                 ///< first step of the hand: contacts of overlaps are ignored
   Matrix3 palm = Matrix3::Identity();   ///< orientation
   Vector3 palm_spin = Vector3::Zero();  ///< angular velocity of the palm [rad/s]
 
@@ -101,7 +93,7 @@ struct MovingHand {
     if (carrier == nullptr) return own;
     return {carrier->to_world(own.start), carrier->to_world(own.end), radius[c]};
   }
-  /// Limit of what the carrier adds to `speed`, of a phalanx that comes within `distance` of a point [m/s].
+  /// Largest speed that the carrier adds to `speed`, for a phalanx within `distance` of a point [m/s].
   double carried_speed(const Vector3& point, double distance) const {
     constexpr double kPhalanx = 0.3;  // longer than any, with its radius [m]
     if (carrier == nullptr) return 0.0;
@@ -153,7 +145,7 @@ class HandMotion {
  private:
   MovingHand hand_;
   double seconds_;
-  bool emerged_;
+  bool spawned_;
   Matrix3 palm_orientation(double fraction) const;
 
   Matrix3 palm_from_;
@@ -175,16 +167,14 @@ struct FirstTouch {
   Features features;  ///< then; distance about 0
 };
 
-/// Finds when the distance first gets down to 0 within `duration` [s], if it does; `separation(time)` gives
-/// an optional Separation, nothing where the two are far apart. For convex shapes in relative translation the
-/// distance is convex in time, so that Newton's method from the start approaches the first touch from before
-/// it.
+/// Finds when the distance first becomes 0 within `duration` [s], if it does, by Newton's method from the
+/// start; `separation(time)` returns an optional Separation, nothing where the two are far apart. For convex
+/// shapes in relative translation the distance is convex in time, so that the iterations stay before the
+/// first touch. Its rate is n.(v_a - v_b) of the two nearest points (envelope theorem).
 ///
-/// The distance's rate is n.(v_a - v_b) of the two nearest points: that these wander does not count, as each
-/// is nearest (the envelope theorem). Traps: bodies that turn make the distance concave at times, so that a
-/// step may end beyond the touch, which then counts with what it overlaps; and what parts now is given up,
-/// also where a turn would bring another corner in before the step ends. What only grazes may use up all 30
-/// steps, and is no touch then.
+/// Traps: rotation may make the distance concave, so that an iteration ends beyond the touch, with an
+/// overlap. A pair that separates now is dropped, even if rotation would bring another corner in. A grazing
+/// pair may use up all iterations, and does not touch then.
 template <typename Features, typename SeparationAt>
 std::optional<FirstTouch<Features>> first_touch(const SeparationAt& separation, double duration) {
   constexpr double kMaxTouchGap = 1e-6;  // [m]
@@ -195,8 +185,6 @@ std::optional<FirstTouch<Features>> first_touch(const SeparationAt& separation, 
     if (!now) return std::nullopt;
     if (now->distance <= kMaxTouchGap) return FirstTouch<Features>{time, now->features};
     if (now->rate >= 0.0) return std::nullopt;
-    // The tangent's zero: t + d / -d'. Where d is convex, the tangent is below it, so that this is never
-    // late.
     time += now->distance / -now->rate;
     if (time > duration) return std::nullopt;
   }

@@ -183,14 +183,14 @@ class Obstacle {
  public:
   explicit Obstacle(const Body& body) : scene_(scene_of(body)), geometry_(scene_) {}
 
-  /// Penetration of a capsule; below 0: its distance [m].
+  /// Penetration of a capsule; negative if it does not touch [m].
   double depth(const Capsule& capsule) const {
     double deepest = -1e300;
     for (std::size_t s = 0; s < scene_.bodies[0].shapes.size(); ++s) {
       const Pose& pose = scene_.bodies[0].shapes[s].pose;
       const Capsule local{pose.to_local(capsule.start), pose.to_local(capsule.end), capsule.radius};
-      const ManifoldShape& shape = geometry_.shapes[0][s];
-      deepest = std::max(deepest, -closest_on(shape.shape, shape.mesh, local, capsule.radius).distance);
+      const auto features = geometry_.colliders[0][s].closest(local, capsule.radius);
+      if (features) deepest = std::max(deepest, -features->distance);
     }
     return deepest;
   }

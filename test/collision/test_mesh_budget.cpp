@@ -97,7 +97,7 @@ TEST(MeshBudget, of_a_step_is_shared_by_its_pairs) {
   const Cups cups(0.002, 500);
   SearchBudget budget = last;
   cups.manifold(at(0, 0, 1e-4), budget);
-  EXPECT_LE(budget.spent, max_spent(cups, 0.0, SearchBudget::kLeastSample));
+  EXPECT_LE(budget.spent, max_spent(cups, 0.0, SearchBudget::kMinSample));
 }
 
 TEST(MeshBudget, that_is_exhausted_gives_the_same_bits_again) {

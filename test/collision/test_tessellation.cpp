@@ -172,12 +172,12 @@ TEST(Tessellation, a_finger_lies_along_a_face_as_along_a_boxs) {
 
 /// Part of the capsule's axis on which its pad lies.
 AxisSpan pad(const PlacedCollider& collider, const Capsule& capsule) {
-  return collider.pad(capsule, collider.closest(capsule, 1.0));
+  return collider.pad(capsule, *collider.closest(capsule, 1.0));
 }
 struct PlacedMesh {
   explicit PlacedMesh(const TriangleMesh& mesh) : collider(mesh) {}
   MeshCollider collider;
-  PlacedShape shape{Mesh{}, Pose()};
+  PlacedShape shape{Mesh{std::make_shared<const TriangleMesh>()}, Pose()};
   PlacedCollider placed{shape, &collider};
 };
 
@@ -195,7 +195,7 @@ TEST(Tessellation, a_finger_beside_an_edge_lies_on_the_faces_of_a_box) {
           kLength * Vector3(1.0, random.between(-0.5, 0.5), random.between(-0.1, 0.1)).normalized();
       const Vector3 middle(random.between(-0.06, 0.06), random.between(-0.03, 0.03), 0.016);
       const Capsule capsule{middle - 0.5 * along, middle + 0.5 * along, 0.008};
-      const ClosestFeatures features = of_box.closest(capsule, 1.0);
+      const ClosestFeatures features = *of_box.closest(capsule, 1.0);
       const AxisSpan a = of_box.pad(capsule, features), b = pad(mesh.placed, capsule);
       if ((a.s1 - a.s0) * kLength < kShort) continue;
       EXPECT_NEAR(b.s0, a.s0, 1e-4) << i;  // 2.5 um: the mesh's pad is that of a line 0.1 um beside the axis
@@ -211,7 +211,7 @@ TEST(Tessellation, a_finger_beside_an_edge_lies_on_a_face_that_is_not_convex) {
   for (const double rise : {-0.001, 0.001}) {  // over either edge of an arm of 20 mm
     const Vector3 start(0.02, -0.03, 0.026), along(0.0, 0.04, rise);
     const Capsule capsule{start, start + along, 0.008};
-    const double depth = -angle.placed.closest(capsule, 1.0).distance;
+    const double depth = -angle.placed.closest(capsule, 1.0)->distance;
     const double length = 0.5 * (1.0 - 0.5 * std::abs(rise) / depth);
     const AxisSpan span = pad(angle.placed, capsule);
     EXPECT_NEAR(span.s1 - span.s0, length, 1e-3);
