@@ -37,8 +37,7 @@ struct Parameters {
     const std::string allowed = "a list of 2 to 8 topics with hand frames";
     NodeParameters known;
     known.add("inputs", allowed, [this](const std::string& name, const std::string& text) {
-      for (const YAML::Node& topic : load_yaml("parameter '" + name + "'", text))
-        inputs.push_back(yaml_text(topic));
+      inputs = yaml_texts("parameter '" + name + "'", text);
       return inputs.size() >= 2 && inputs.size() <= 8;
     });
     known.choice<HandMerger::Mode>(

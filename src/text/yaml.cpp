@@ -141,6 +141,12 @@ std::string yaml_text(const YAML::Node& node) {
   return text::one_line(node.IsScalar() ? node.Scalar() : YAML::Dump(node), 60);
 }
 
+std::vector<std::string> yaml_texts(const std::string& source, const std::string& yaml) {
+  std::vector<std::string> texts;
+  for (const YAML::Node& item : load_yaml(source, yaml)) texts.push_back(yaml_text(item));
+  return texts;
+}
+
 std::string yaml_place(const std::string& file, const YAML::Mark& mark) {
   return mark.is_null() ? file : file + ":" + std::to_string(mark.line + 1);
 }

@@ -64,6 +64,8 @@ YAML::Node yaml_list(const std::vector<double>& values);
 
 /// The node as one line of YAML, for messages.
 std::string yaml_text(const YAML::Node& node);
+/// The texts of a sequence in a YAML text.
+std::vector<std::string> yaml_texts(const std::string& source, const std::string& yaml);
 
 /// "FILE:LINE" of a node.
 std::string yaml_place(const std::string& file, const YAML::Mark& mark);
