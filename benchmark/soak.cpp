@@ -9,7 +9,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "math/duration_histogram.h"
+#include "record/duration_histogram.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
 #include "support/random_way.h"
 #include "support/recorded_frames.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../math/duration_histogram.h"
+#include "../record/duration_histogram.h"
 #include "inputs.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/replay/replay.h"

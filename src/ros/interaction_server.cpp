@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "../math/duration_histogram.h"
+#include "../record/duration_histogram.h"
 #include "../text/text.h"
 #include "../text/yaml.h"
 #include "input_log.h"

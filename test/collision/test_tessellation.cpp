@@ -177,7 +177,7 @@ AxisSpan pad(const PlacedCollider& collider, const Capsule& capsule) {
 struct PlacedMesh {
   explicit PlacedMesh(const TriangleMesh& mesh) : collider(mesh) {}
   MeshCollider collider;
-  PlacedShape shape{Mesh{std::make_shared<const TriangleMesh>()}, Pose()};
+  PlacedShape shape{Mesh{std::make_shared<const TriangleMesh>(), "", Vector3::Ones()}, Pose()};
   PlacedCollider placed{shape, &collider};
 };
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "math/duration_histogram.h"
+#include "record/duration_histogram.h"
 #include "math/minimum_jerk.h"
 #include "math/registration.h"
 #include "math/rotation.h"
