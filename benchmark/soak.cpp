@@ -9,8 +9,8 @@
 #include <fstream>
 #include <iostream>
 
-#include "record/duration_histogram.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
+#include "record/duration_histogram.h"
 #include "support/random_way.h"
 #include "support/recorded_frames.h"
 

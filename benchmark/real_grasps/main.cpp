@@ -92,10 +92,12 @@ std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
   line.once("--lead", "LEAD,...", [&](const OptionValue& given) { a.leads = leads_of(given); });
   line.once("--noise", "RMS_MM",
             [&](const OptionValue& given) { a.disturbance.noise = 1e-3 * given.number(0.0, 50.0); });
-  line.once("--rate", "HZ", [&](const OptionValue& given) { a.disturbance.rate = given.number(5.0, 1000.0); });
+  line.once("--rate", "HZ",
+            [&](const OptionValue& given) { a.disturbance.rate = given.number(5.0, 1000.0); });
   line.once("--seeds", "N",
             [&](const OptionValue& given) { a.seeds = static_cast<unsigned>(given.whole(1, 1000)); });
-  line.once("--jobs", "N", [&](const OptionValue& given) { a.jobs = static_cast<unsigned>(given.whole(1, 64)); });
+  line.once("--jobs", "N",
+            [&](const OptionValue& given) { a.jobs = static_cast<unsigned>(given.whole(1, 64)); });
   line.each("--engine", "FILE", [&](const OptionValue& given) { a.engines.push_back(given.text); });
   line.each("--set", "KEY=VALUE", [&](const OptionValue& given) {
     const auto [key, value] = given.setting();

@@ -57,7 +57,8 @@ std::optional<Arguments> read_arguments(const std::vector<std::string>& words) {
   line.flag("--quick", a.quick).once("--output", "DIR", a.output);
   line.each("--scene", "NAME",
             [&](const OptionValue& given) { a.scenes.push_back(given.one_of(known_scenes(all_scenes()))); });
-  line.each("--engine", "NAME", [&](const OptionValue& given) { a.engines.push_back(given.one_of(engines)); });
+  line.each("--engine", "NAME",
+            [&](const OptionValue& given) { a.engines.push_back(given.one_of(engines)); });
   if (!line.read(words)) return std::nullopt;
   if (a.output.empty()) throw UsageError("--output DIR is missing");
   return a;

@@ -24,11 +24,13 @@ enum class Rejection : std::uint8_t {
 };
 const char* to_string(Rejection rejection);
 
-/// Force that grasp assist adds to a hand's contacts with a body.
+/// Wrench that grasp assist adds to a hand's contacts with a body: on the body, mean since the last frame,
+/// world.
 struct GraspSupport {
-  std::uint8_t hand = 0;            ///< index of the hand's track
-  std::uint16_t body = 0;           ///< index in Scene::bodies
-  Vector3 force = Vector3::Zero();  ///< on the body, mean since the last frame, world [N]
+  std::uint8_t hand = 0;             ///< index of the hand's track
+  std::uint16_t body = 0;            ///< index in Scene::bodies
+  Vector3 force = Vector3::Zero();   ///< [N]
+  Vector3 torque = Vector3::Zero();  ///< about the centre of mass [N m]
 };
 
 /// Results of one frame. Valid until the next frame.

@@ -58,14 +58,17 @@ std::optional<Study> read_arguments(const std::vector<std::string>& arguments) {
   CommandLine line;
   line.once("--output", "DIR", study.output).once("--task", "NAME|FILE", study.task);
   line.once("--operators", "FIRST-LAST", [&](const OptionValue& given) { read_operators(given, study); });
-  line.once("--group-size", "N",
-            [&](const OptionValue& given) { study.group_size = static_cast<int>(given.whole(0, kMaxCount)); });
+  line.once("--group-size", "N", [&](const OptionValue& given) {
+    study.group_size = static_cast<int>(given.whole(0, kMaxCount));
+  });
   line.each("--model", "NAME", [&](const OptionValue& given) { study.models.push_back(given.text); });
   line.each("--gravity", "G",
             [&](const OptionValue& given) { study.gravities.push_back(given.number(0.0, 10.0)); });
-  line.each("--set", "KEY=VALUE", [&](const OptionValue& given) { study.settings.push_back(given.setting()); });
-  line.once("--seed", "N",
-            [&](const OptionValue& given) { study.seed = static_cast<std::uint64_t>(given.whole(0, kMaxCount)); });
+  line.each("--set", "KEY=VALUE",
+            [&](const OptionValue& given) { study.settings.push_back(given.setting()); });
+  line.once("--seed", "N", [&](const OptionValue& given) {
+    study.seed = static_cast<std::uint64_t>(given.whole(0, kMaxCount));
+  });
   line.flag("--free-hands", study.free_hands);
   if (!line.read(arguments)) return std::nullopt;
   if (study.output.empty()) throw UsageError("--output is missing: --output DIR");

@@ -56,7 +56,8 @@ int write_recording(const std::vector<std::string>& arguments) {
   line.once("--scene", "NAME|FILE", scene);
   line.once("--side", "left|right", options.side);
   line.once("--rate", "HZ", [&](const OptionValue& given) { options.rate = given.number(1.0, 1000.0); });
-  line.once("--noise", "AMPLITUDE", [&](const OptionValue& given) { options.noise = given.number(0.0, 10.0); });
+  line.once("--noise", "AMPLITUDE",
+            [&](const OptionValue& given) { options.noise = given.number(0.0, 10.0); });
   line.once("--seed", "N", [&](const OptionValue& given) {
     options.seed = static_cast<std::uint64_t>(given.whole(0, 1000000000));
   });

@@ -57,7 +57,8 @@ std::set<std::size_t> frame_numbers(const OptionValue& given) {
   constexpr long kMaxFrame = 1000000000;
   std::set<std::size_t> frames;
   for (const std::string& number : text::split(given.text))
-    frames.insert(static_cast<std::size_t>(OptionValue{given.option, given.form, number}.whole(0, kMaxFrame)));
+    frames.insert(
+        static_cast<std::size_t>(OptionValue{given.option, given.form, number}.whole(0, kMaxFrame)));
   return frames;
 }
 
@@ -82,19 +83,23 @@ CommandLine command_line(ReplayArguments& a, bool& compare) {
   line.once("--topic", "TOPIC", [&a](const OptionValue& given) { a.topic = given.text; });
   line.once("--params", "FILE.yaml", [&a](const OptionValue& given) { a.parameter_file = given.text; });
   line.each("--set", "KEY=VALUE", [&a](const OptionValue& given) { a.settings.push_back(given.setting()); });
-  line.once("--export", "HZ", [&a](const OptionValue& given) { a.export_rate = rate(given, "the recording's"); });
+  line.once("--export", "HZ",
+            [&a](const OptionValue& given) { a.export_rate = rate(given, "the recording's"); });
   line.once("--markers", "RATE", [&a](const OptionValue& given) { a.marker_rate = rate(given); });
   line.once("--marker-frames", "FRAME,FRAME,...",
             [&a](const OptionValue& given) { a.marker_frames = frame_numbers(given); });
   line.once("--film", "FILE.webp|FILE.mp4", [&a](const OptionValue& given) { a.film = film(given); });
-  line.each("--object-pose", "NAME,x,y,z,qx,qy,qz,qw",
-            [&a](const OptionValue& given) { a.object_poses.emplace_back(object_name(given), pose(given, 1)); });
-  line.each("--object-twist", "NAME,vx,vy,vz,wx,wy,wz",
-            [&a](const OptionValue& given) { a.object_twists.emplace_back(object_name(given), twist(given)); });
+  line.each("--object-pose", "NAME,x,y,z,qx,qy,qz,qw", [&a](const OptionValue& given) {
+    a.object_poses.emplace_back(object_name(given), pose(given, 1));
+  });
+  line.each("--object-twist", "NAME,vx,vy,vz,wx,wy,wz", [&a](const OptionValue& given) {
+    a.object_twists.emplace_back(object_name(given), twist(given));
+  });
   line.once("--hand-transform", "x,y,z,qx,qy,qz,qw",
             [&a](const OptionValue& given) { a.hand_transform = pose(given, 0); });
   line.once("--hand-order", "NAME", [&a](const OptionValue& given) { a.hands.order = order(given); });
-  line.once("--hand-scale", "FACTOR", [&a](const OptionValue& given) { a.hands.scale = given.number(1e-6, 1e6); });
+  line.once("--hand-scale", "FACTOR",
+            [&a](const OptionValue& given) { a.hands.scale = given.number(1e-6, 1e6); });
   for (const char* const side : {"left", "right", "both"}) {
     const std::string stands_for = std::string("hands/") + (side[0] == 'b' ? "" : side + std::string("/"));
     line.once(std::string("--") + side, "TOPIC", [&a, stands_for](const OptionValue& given) {

@@ -174,10 +174,11 @@ void ResultWriter::write_objects(double time, const FrameResult& result, const S
     const Pose& pose = state.bodies[i].pose;
     const Twist twist = twist_of(body, state.bodies[i]);
     const InteractionLevel level = level_of(i, state);
-    const std::optional<Vector3> assist = assist_force(i, result);
+    const std::optional<GraspSupport> assist = assist_on(i, result);
     table(kObjects).row(time, body.name, pose.position, pose.orientation, twist.linear, twist.angular,
                         static_cast<int>(level), level == InteractionLevel::grasp, assist.has_value(),
-                        assist.value_or(Vector3::Zero()), frame_);
+                        assist.value_or(GraspSupport{}).force, frame_,
+                        assist.value_or(GraspSupport{}).torque);
   }
 }
 
@@ -225,7 +226,7 @@ void ResultWriter::write_events(const std::vector<Event>& events, const FrameRes
     const bool has_body = event.body >= 0;
     table(kEvents).row(to_seconds(event.stamp - first_stamp_), event_name(event.kind),
                        has_body ? scene_->bodies[body].name : std::string(), event.hand_id, frame_,
-                       has_body && assist_force(body, now));
+                       has_body && assist_on(body, now).has_value());
   }
 }
 

@@ -79,8 +79,8 @@ class SimulationCost {
     last_[calls_++ % last_.size()] = cost;
   }
 
-  /// Time that a call can simulate within kMaxCallTime, by the second most expensive of the last calls: one of
-  /// them may have waited for a processor.
+  /// Time that a call can simulate within kMaxCallTime, by the second most expensive of the last calls: one
+  /// of them may have waited for a processor.
   Nanoseconds affordable() const {
     std::array<double, 4> sorted = last_;
     std::sort(sorted.begin(), sorted.end());

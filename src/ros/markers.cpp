@@ -32,7 +32,7 @@ std::string held_by_hands(const Scene& scene, const FrameResult& result, const S
   std::vector<std::string> held;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (is_held(i, state))
-      held.push_back(scene.bodies[i].name + (assist_force(i, result) ? " (with grasp assist)" : ""));
+      held.push_back(scene.bodies[i].name + (assist_on(i, result) ? " (with grasp assist)" : ""));
   }
   return "holding: " + (held.empty() ? "nothing" : text::joined(held));
 }

@@ -142,9 +142,10 @@ msg::ObjectStateArray objects_message(const Outcome& outcome, const std_msgs::He
     object.mass = body.mass;
     object.held = is_held(i, state);
     object.is_operator = body.is_operator;
-    const std::optional<Vector3> assist = assist_force(i, result);
+    const std::optional<GraspSupport> assist = assist_on(i, result);
     object.assisted = assist.has_value();
-    object.assist_force = vector_message(assist.value_or(Vector3::Zero()));
+    object.assist_force = vector_message(assist.value_or(GraspSupport{}).force);
+    object.assist_torque = vector_message(assist.value_or(GraspSupport{}).torque);
   }
   return message;
 }
@@ -194,7 +195,7 @@ msg::InteractionEvent event_message(const Scene& scene, const FrameResult& resul
   if (event.body >= 0) {
     const std::size_t body = event.body;
     message.object = scene.bodies[body].name;
-    message.assisted = assist_force(body, result).has_value();
+    message.assisted = assist_on(body, result).has_value();
   }
   message.hand_id = event.hand_id;
   return message;

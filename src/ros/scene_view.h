@@ -133,7 +133,8 @@ class SceneView {
       state_.bodies[i].angular_momentum = from_message(object.twist.angular);
       state_.interactions[i].level = object.held ? InteractionLevel::grasp : InteractionLevel::none;
       if (object.assisted)
-        result_.assists.push_back({0, static_cast<std::uint16_t>(i), from_message(object.assist_force)});
+        result_.assists.push_back({0, static_cast<std::uint16_t>(i), from_message(object.assist_force),
+                                   from_message(object.assist_torque)});
     }
   }
   void take_contacts(const std::vector<mr_hand_interaction::Contact>& contacts) {

@@ -21,11 +21,14 @@ FrictionUse friction_use(const Contact& contact, const Material& material) {
   return {normal, (contact.force + normal * contact.normal).norm(), friction * std::max(normal, 0.0)};
 }
 
-std::optional<Vector3> assist_force(std::size_t body, const FrameResult& result) {
-  std::optional<Vector3> force;
-  for (const GraspSupport& assist : result.assists)
-    if (assist.body == body) force = force.value_or(Vector3::Zero()) + assist.force;
-  return force;
+std::optional<GraspSupport> assist_on(std::size_t body, const FrameResult& result) {
+  std::optional<GraspSupport> sum;
+  for (const GraspSupport& assist : result.assists) {
+    if (assist.body != body) continue;
+    if (!sum) sum = GraspSupport{};
+    sum->force += assist.force, sum->torque += assist.torque;
+  }
+  return sum;
 }
 
 const char* finger_name(int capsule) {

@@ -19,8 +19,8 @@ struct FrictionUse {
 };
 FrictionUse friction_use(const Contact& contact, const Material& material);
 
-/// Force of grasp assist on a body, mean over the frame; nullopt if none supports it [N].
-std::optional<Vector3> assist_force(std::size_t body, const FrameResult& result);
+/// Wrench of grasp assist on a body, of all hands; nullopt if none supports it.
+std::optional<GraspSupport> assist_on(std::size_t body, const FrameResult& result);
 
 /// thumb, index, middle, ring, little; palm.
 const char* finger_name(int capsule);

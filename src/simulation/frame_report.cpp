@@ -244,7 +244,7 @@ void Simulation::Impl::report(Nanoseconds stamp) {
   find_final_contacts();
   add_transfer(transfer, result.contacts);
   for (GraspSupport support : transfer.assists) {
-    support.force /= transfer.seconds;
+    support.force /= transfer.seconds, support.torque /= transfer.seconds;
     result.assists.push_back(support);
   }
   update_interactions();
@@ -295,9 +295,9 @@ void FrameTransfer::add(const SimulationState& after, double step) {
       return known.hand == grip.hand && known.body == grip.body;
     });
     if (same == assists.end()) {
-      assists.push_back({grip.hand, grip.body, step * grip.force});
+      assists.push_back({grip.hand, grip.body, step * grip.force, step * grip.torque});
     } else {
-      same->force += step * grip.force;
+      same->force += step * grip.force, same->torque += step * grip.torque;
     }
   }
   for (auto contact = after.contacts.begin(); contact != after.contacts.end();) {

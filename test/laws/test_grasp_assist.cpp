@@ -241,16 +241,18 @@ TEST(GraspAssist, a_hand_at_rest_presses_what_it_holds_off_its_middle_and_assist
 
 // Every step, the forces and impacts of the contacts, and grasp assist's force beside them, are what changes
 // the body's momentum.
-TEST(GraspAssist, its_force_and_the_contacts_are_all_that_acts_on_the_body) {
+TEST(GraspAssist, its_wrench_and_the_contacts_are_all_that_acts_on_the_body) {
   // 1 mN for a frame: the forces are those of the last iterate, the momenta of the next.
   constexpr double kRate = 120.0, kSolved = 2e-5;  // [N s]
+  // A twelfth of what the assist's torque does in a frame: arms are those of the frame's end.
+  constexpr double kTurned = 4e-5;  // [N m s]
   Configuration configuration = testing::implicit_configuration();
   configuration.step = 1.0 / 119.0;  // a frame is a step
   configuration.contact.hand = HandStrength::of_a_person();
   Body heavy = testing::stiff_box(Vector3::Constant(2.0 * testing::kReachedHalf), 3.0);
   heavy.material.static_friction = heavy.material.dynamic_friction = 0.1;  // slips
   Simulation simulation(testing::scene_of(heavy), configuration);
-  Vector3 before = Vector3::Zero();
+  Vector3 before = Vector3::Zero(), turned = Vector3::Zero(), centre = Vector3::Zero();
   Nanoseconds last = 0;
   int borne = 0;
   testing::play(
@@ -260,16 +262,23 @@ TEST(GraspAssist, its_force_and_the_contacts_are_all_that_acts_on_the_body) {
                                  0.1 * testing::smooth(t - 0.5, 0.5) * Vector3::UnitY());
       },
       [&](const Simulation& s) {
-        const Vector3 now = s.state().bodies[0].linear_momentum;
-        Vector3 given = Vector3::Zero();
+        const BodyState& body = s.state().bodies[0];
+        const Vector3 now = body.linear_momentum;
+        Vector3 given = Vector3::Zero(), turn = Vector3::Zero();
         const double frame = to_seconds(s.state().time - last);
-        for (const Contact& contact : s.result().contacts) given += frame * contact.force + contact.impulse;
-        for (const GraspSupport& assist : s.result().assists) given += frame * assist.force;
+        for (const Contact& contact : s.result().contacts) {
+          const Vector3 impulse = frame * contact.force + contact.impulse;
+          given += impulse,
+              turn += (contact.point - centre).cross(impulse) + frame * contact.torque * contact.normal;
+        }
+        for (const GraspSupport& assist : s.result().assists)
+          given += frame * assist.force, turn += frame * assist.torque;
         if (last != 0 && s.result().contacts.size() > 1) {  // of a touch that ends nothing is told
           EXPECT_LT((now - before - given).norm(), kSolved) << to_seconds(s.state().time);
+          EXPECT_LT((body.angular_momentum - turned - turn).norm(), kTurned) << to_seconds(s.state().time);
         }
         for (const Grip& grip : s.state().grips) borne += grip.active;
-        before = now, last = s.state().time;
+        before = now, turned = body.angular_momentum, centre = body.pose.position, last = s.state().time;
       });
   EXPECT_GT(borne, 50);
 }

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "record/duration_histogram.h"
 #include "math/minimum_jerk.h"
 #include "math/registration.h"
 #include "math/rotation.h"
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/synthetic/random.h"
+#include "record/duration_histogram.h"
 
 namespace mrhi {
 namespace {

@@ -23,7 +23,9 @@ struct Program {
     line.flag("--quick", quick).once("--output", "DIR", output);
     line.once("--size", "M", [this](const OptionValue& given) { size = given.number(-1.0, 2.5); });
     line.once("--count", "N", [this](const OptionValue& given) { count = given.whole(1, 10); });
-    line.once("--colour", "NAME", [this](const OptionValue& given) { colour = given.one_of({"red", "blue"}); });
+    line.once("--colour", "NAME", [this](const OptionValue& given) {
+      colour = given.one_of({"red", "blue"});
+    });
     line.each("--set", "KEY=VALUE", [this](const OptionValue& given) {
       settings.push_back(given.setting().first + " is " + given.setting().second);
     });

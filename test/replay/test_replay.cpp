@@ -168,7 +168,7 @@ TEST(Replay, objects_start_where_and_as_they_are_told) {
   replayed.arguments.object_twists = {{scene.bodies[0].name, {{0.1, 0, 0}, {0, 0, 0}}}};
   replayed.run("out");
   const auto lines = test::lines_of(replayed.folder / "out/objects.csv");
-  EXPECT_EQ(lines[1], "0," + scene.bodies[0].name + ",0.5,0.4,0.3,1,0,0,0,0.1,0,0,0,0,0,0,0,0,0,0,0,0");
+  EXPECT_EQ(lines[1], "0," + scene.bodies[0].name + ",0.5,0.4,0.3,1,0,0,0,0.1,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0");
 }
 
 TEST(Replay, objects_scenes_and_parameters_on_the_command_line_must_exist) {

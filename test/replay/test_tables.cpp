@@ -52,8 +52,8 @@ TEST(ResultWriter, objects_have_a_row_for_each_free_body_and_frame) {
   EXPECT_EQ(
       lines[0],
       "time,name,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,level,held,assisted,assist_fx,assist_fy,assist_fz,"
-      "frame");
-  EXPECT_EQ(lines[1], "0,object,0.1,-0.2,0.333333333333,0,0,0,1,0.1,0,0,0,0,0,0,0,0,0,0,0,0");
+      "frame,assist_tx,assist_ty,assist_tz");
+  EXPECT_EQ(lines[1], "0,object,0.1,-0.2,0.333333333333,0,0,0,1,0.1,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0");
   EXPECT_EQ(lines[2].substr(0, lines[2].find(",0.1")), "0.008333333,object");
 }
 
@@ -143,14 +143,14 @@ TEST(ResultWriter, palms_say_whether_the_tracker_sees_the_hand) {
   EXPECT_EQ(written.lines("palms.csv").at(1), "0,1,1,1,2,3,0,0,0,1,0.5,1,0");
 }
 
-TEST(ResultWriter, an_object_that_grasp_assist_supports_is_marked_with_its_force) {
+TEST(ResultWriter, an_object_that_grasp_assist_supports_is_marked_with_its_wrench) {
   Written written;
   written.state.interactions.assign(kMaxHands * written.state.bodies.size(), Interaction());
   written.state.interactions[2].level = InteractionLevel::grasp;  // of the second hand
-  written.result.assists = {{0, 0, {0, 0, 0.25}}};
+  written.result.assists = {{0, 0, {0, 0, 0.25}, {0.5, 0, 0}}};
   written.write(0, 1);
   const std::string row = written.lines("objects.csv").at(1);
-  EXPECT_EQ(row.substr(row.size() - 17), ",3,1,1,0,0,0.25,0");
+  EXPECT_EQ(row.substr(row.size() - 25), ",3,1,1,0,0,0.25,0,0.5,0,0");
 }
 
 TEST(ResultWriter, a_folder_that_cannot_be_made_is_named) {

@@ -152,13 +152,14 @@ TEST(ObjectMessages, tell_pose_twist_and_mass_of_what_is_no_fixture) {
   EXPECT_FALSE(message.objects[0].held);
 }
 
-TEST(ObjectMessages, say_that_grasp_assist_supports_an_object_and_with_which_force) {
+TEST(ObjectMessages, say_that_grasp_assist_supports_an_object_and_with_which_wrench) {
   const Things things;
   FrameResult result;
-  result.assists = {{0, 2, {0, 0, 0.75}}, {1, 2, {0, 0.5, 0}}};  // of two hands
+  result.assists = {{0, 2, {0, 0, 0.75}, {0.25, 0, 0}}, {1, 2, {0, 0.5, 0}, {0.5, 0, 0}}};  // of two hands
   const auto objects = objects_message({things.scene, result, things.state}, world()).objects;
   EXPECT_TRUE(objects[2].assisted);
   EXPECT_EQ(vector(objects[2].assist_force), Vector3(0, 0.5, 0.75));
+  EXPECT_EQ(vector(objects[2].assist_torque), Vector3(0.75, 0, 0));
   EXPECT_FALSE(objects[0].assisted);
   EXPECT_EQ(vector(objects[0].assist_force), Vector3(0, 0, 0));
 }

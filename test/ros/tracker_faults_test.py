@@ -80,7 +80,7 @@ class TrackerFaultsTest(unittest.TestCase):
 
     def test_a_step_of_the_trackers_clock_is_taken_out_and_counted(self):
         key = "clock steps taken out"
-        for step, topic in ((-2.0, "hands/pose_array"), (1.0, "hands/point_cloud")):
+        for step, topic in ((-20.0, "hands/pose_array"), (10.0, "hands/point_cloud")):  # longer than a busy machine is late
             before = self.counts[key]
             begin = rospy.Time.now()
             frames = self.play(topic, 60, lambda i, b=begin, s=step: self.pose_array(
@@ -88,7 +88,7 @@ class TrackerFaultsTest(unittest.TestCase):
             stamps = [frame.header.stamp.to_sec() for frame in frames]
             steps = [b - a for a, b in zip(stamps, stamps[1:])]
             self.assertGreater(min(steps), 0.0)
-            self.assertLess(max(steps), 0.5)  # half of the smaller step; 20 ms, but for what a busy machine is late by
+            self.assertLess(max(steps), 5.0)  # half of the smaller step; 20 ms, but for what a busy machine is late by
             self.assertTrue(all(len(frame.hands) == 1 for frame in frames))
             self.wait_for_count(key, before + 1)
 
