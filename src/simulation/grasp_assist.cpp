@@ -33,8 +33,6 @@ constexpr double kOpeningFraction = 0.5;
 /// Once the hand has opened by this, a grip that has lost a side does not become active, and one that has
 /// lost both is not [m].
 constexpr double kMinOpening = 0.0015;
-/// No grip begins, or becomes active, while its fingers open faster than this [m/s].
-constexpr double kMaxTakingSpeed = 0.03, kMaxActivationSpeed = 1.0;
 /// A grip waits this long for a lost hand [s]. It continues if the hand returns within this of the pose in
 /// which it held the body [m], [rad].
 constexpr double kMaxLoss = 1.05, kReturnDistance = 0.03, kReturnAngle = 0.5;
@@ -65,12 +63,6 @@ double opened_by(const HandTrack& track, double seconds, Grip& grip) {
   grip.mean_aperture = std::clamp(grip.mean_aperture, now - margin, now + margin);
   grip.min_aperture = std::min(grip.min_aperture, grip.mean_aperture);
   return grip.mean_aperture - grip.min_aperture;
-}
-
-/// True if the fingers opened faster than this in the last frame, beyond the tracker's noise.
-bool opens_faster_than(double speed, const HandTrack& track, double seconds, const Grip& grip) {
-  const double change = aperture(grip, track.current) - aperture(grip, track.previous);
-  return change - noise_margin(track) > speed * seconds;
 }
 
 /// True if the hand, at this fraction of the frame, has opened beyond the tracker's noise: of an active grip,
@@ -267,7 +259,7 @@ void GraspAssist::take_held_objects(bool seen, double fraction, SimulationState&
       OpposingContacts one_of_them;
       one_of_them.body = body, one_of_them.fingers_mask = 1 << 1;
       one_of_them.base = one_of_them.fingers = one->point;
-      take(seen, slot, one_of_them, fraction, state);
+      take(slot, one_of_them, fraction, state);
       continue;
     }
     const bool visited = std::any_of(contacts.begin(), one, [&](const Contact& before) {
@@ -286,7 +278,7 @@ void GraspAssist::take_held_objects(bool seen, double fraction, SimulationState&
     if (!found) found = objects_.opposing_contacts(slot, body, true, contacts);
     if (!found || (seen && found->depth <= kPadDepth)) continue;
     if (is_new || known->by_palm != found->by_palm || (found->fingers_mask & ~known->fingers) != 0)
-      take(seen, slot, *found, fraction, state);
+      take(slot, *found, fraction, state);
   }
 }
 
@@ -296,9 +288,9 @@ std::vector<Grip>::iterator GraspAssist::find_grip(std::size_t slot, std::size_t
                       [&](const Grip& grip) { return objects_.is_in(grip, slot, body); });
 }
 
-/// Begins a grip, unless a `seen` hand opens, in place of one that has fewer fingers. The springs of a grip
-/// on a linkage act on the link that the thumb or the palm touches.
-void GraspAssist::take(bool seen, std::size_t slot, const OpposingContacts& opposing, double fraction,
+/// Begins a grip, in place of one that has fewer fingers. The springs of a grip on a linkage act on the link
+/// that the thumb or the palm touches.
+void GraspAssist::take(std::size_t slot, const OpposingContacts& opposing, double fraction,
                        SimulationState& state) const {
   const std::size_t b = opposing.body;
   const Hand &from = state.hands[slot].previous, &to = state.hands[slot].current;
@@ -310,9 +302,6 @@ void GraspAssist::take(bool seen, std::size_t slot, const OpposingContacts& oppo
   grip.by_palm = opposing.by_palm;
   grip.fingers = opposing.fingers_mask;
   const auto known = find_grip(slot, b, state);
-  if (seen && !grip.released && known == state.grips.end() &&
-      opens_faster_than(kMaxTakingSpeed, state.hands[slot], seconds_, grip))
-    return;
   if (known != state.grips.end()) {
     if (known->by_palm == grip.by_palm) grip.fingers |= known->fingers;
     state.grips.erase(known);
@@ -487,7 +476,6 @@ void GraspAssist::begin_step(double fraction, double step, SimulationState& stat
     leave_joints_free(step, state, grip);
     if (grip.active) comply_with_contacts(step, state, grip);
     if (grip.active || offset(state, grip) <= kMaxOffset) continue;
-    if (opens_faster_than(kMaxActivationSpeed, track, seconds_, grip)) continue;
     grip.active = true;
     for (std::size_t i = 0; i < kGripPoints; ++i)
       grip.in_body[i] = state.bodies[grip.body].pose.to_local(grip.point[i]);

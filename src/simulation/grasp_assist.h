@@ -51,7 +51,7 @@ class GraspAssist {
   void follow(SimulationState& state, Grip& grip);
   std::vector<Grip>::iterator find_grip(std::size_t slot, std::size_t body, SimulationState& state) const;
   void take_held_objects(bool seen, double fraction, SimulationState& state) const;
-  void take(bool seen, std::size_t slot, const OpposingContacts& opposing, double fraction,
+  void take(std::size_t slot, const OpposingContacts& opposing, double fraction,
             SimulationState& state) const;
   void place_springs(double fraction, double until, const HandTrack& track, Grip& grip) const;
   void comply_with_contacts(double step, const SimulationState& state, Grip& grip) const;

@@ -69,10 +69,9 @@ TEST(GraspAssist, ends_within_a_millimetre_of_clearance) {
   }
 }
 
-// The shipped hand and filter, at 0 g: a hand that opens takes nothing anew. It once took the cube in the
-// frame in which it let go, and threw it at 0.4 m/s; a contact
-// alone gives back 0.1.
-TEST(GraspAssist, takes_nothing_while_the_fingers_leave_and_the_thumb_stays) {
+// The shipped hand and filter, at 0 g. Assist once took the cube anew in the frame in which the hand let go,
+// and threw it at 0.4 m/s; a contact alone gives back 0.1.
+TEST(GraspAssist, does_not_pull_as_the_fingers_leave_and_the_thumb_stays) {
   constexpr double kOpens = 1.0;
   for (const double rate : {30.0, 60.0, 120.0}) {
     for (const double speed : {0.3, 0.5, 0.8}) {
