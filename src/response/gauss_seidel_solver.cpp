@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace mrhi {
 namespace {
 
 /// Number of contacts that all sweeps of a step relax together, and limits of the number of sweeps. At least
-/// as many sweeps as a cube of such bodies is high: with fewer, blocks of 384 to 1000 cubes without a warm
-/// start fell apart.
+/// as many sweeps as a cube of such bodies is high, and as a slender stack is: with fewer, blocks of 384 to
+/// 1000 cubes without a warm start fell apart, and so did 50 boards on each other.
 constexpr int kRelaxationBudget = 400, kMinSweeps = 4, kMaxSweeps = 30;
 /// An island is nearly at rest if no body is faster than a fall of this many steps. Such an island, and one
 /// in which a body touches another of so many times its mass, takes as many sweeps as it needs, up to a
@@ -217,14 +218,33 @@ double GaussSeidelSolver::accelerate(double last) {
   return square;
 }
 
-/// Of two bodies that touch.
 double GaussSeidelSolver::max_mass_ratio() const {
-  double largest = 1.0;
-  for (const ContactPatch& patch : patches_) {
-    const double a = body(patch.a).inverse_mass, b = body(patch.b).inverse_mass;
-    if (a > 0.0) largest = std::max({largest, a / b, b / a});
+  double lightest = 0.0, heaviest = kMaxSpeed;
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    lightest = std::max(lightest, bodies_[i].inverse_mass);
+    heaviest = std::min(heaviest, bodies_[i].inverse_mass);
   }
-  return largest;
+  return lightest / heaviest;
+}
+
+/// Bodies above each other in the longest stack: the largest number of contacts between a body and the
+/// nearest fixture or hand. 0 without any.
+int GaussSeidelSolver::height() {
+  constexpr int kUnsupported = std::numeric_limits<int>::max() - 1;
+  levels_.assign(bodies_.size(), kUnsupported);
+  levels_.back() = 0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    const auto lift = [&](int& upper, int lower) {
+      if (upper > lower + 1) upper = lower + 1, changed = true;
+    };
+    for (const ContactPatch& patch : patches_)
+      lift(levels_[patch.b], levels_[patch.a]), lift(levels_[patch.a], levels_[patch.b]);
+  }
+  int highest = 0;
+  for (const int level : levels_)
+    if (level < kUnsupported) highest = std::max(highest, level);
+  return highest;
 }
 
 double GaussSeidelSolver::max_speed() const {
@@ -248,9 +268,11 @@ void GaussSeidelSolver::solve(const ContactStep& step) {
     return std::sqrt(largest);
   };
   const auto points = static_cast<int>(points_.size()), bodies = static_cast<int>(free_.size());
-  int min_sweeps = kMinSweeps;
+  const int stack = height();
+  int min_sweeps = std::max(kMinSweeps, stack * stack / std::max(1, bodies));
   while (min_sweeps * min_sweeps * min_sweeps < bodies) ++min_sweeps;
-  const int max_sweeps = std::clamp(kRelaxationBudget / std::max(1, points), min_sweeps, kMaxSweeps);
+  const int max_sweeps =
+      std::clamp(kRelaxationBudget / std::max(1, points), min_sweeps, std::max(min_sweeps, kMaxSweeps));
   const int max_at_rest = std::clamp(kRestBudget / std::max(1, points), kMinSweepsAtRest, kMaxSweepsAtRest);
   const double fall = kRestFallSteps * step_ * step.gravity.norm();
   const bool uneven = max_mass_ratio() > kMassRatio;

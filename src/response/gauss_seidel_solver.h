@@ -37,6 +37,7 @@ class GaussSeidelSolver {
   void relax(ContactPatch& patch);
 
   double max_mass_ratio() const;
+  int height();
   double max_speed() const;
   double missing_speed(const ContactStep& step, const Range& range) const;
   double max_speed_gain() const;
@@ -59,6 +60,7 @@ class GaussSeidelSolver {
   std::vector<Motion6> checked_;     // motions at which open_ was checked
   double min_missing_speed_ = 0.0;   // smallest missing_speed() of open_ at checked_ [m/s]
   double max_arm_ = 0.0;             // of any contact [m]
+  std::vector<int> levels_;          // of bodies_, above what is immovable
   // State before a sweep, and the current search directions.
   std::vector<Motion6> motions_before_, motion_directions_;
   std::vector<PatchImpulses> impulses_before_, impulse_directions_;

@@ -12,7 +12,7 @@ ALLOWED = {"src/ros/hand_frame_conversion.cpp",  # to_ros_time, from_ros_time, s
 FORBIDDEN = re.compile(r"\([^()]+-[^()]+\)\.toSec\(\)|ros::Duration\([a-z]|ros::Time\([a-z]|\.fromNSec\(|\.fromSec\(|ros::Time::sleepUntil|"
                        r"createTimer\(|ros::Rate|ros::Duration\([^)]*\)\.sleep")
 WALL = re.compile(r"Wall")  # the machine's own clock, which no message sets
-CONSTANT = re.compile(r"marker\.lifetime = ros::Duration\(lifetime_\)")  # of a layer, half a second or for ever
+CONSTANT = re.compile(r"marker\.lifetime = ros::Duration\(lifetime\)")  # of a layer, half a second or for ever
 
 
 def offences(text):

@@ -164,6 +164,12 @@ TEST(ObjectMessages, say_that_grasp_assist_supports_an_object_and_with_which_wre
   EXPECT_EQ(vector(objects[0].assist_force), Vector3(0, 0, 0));
 }
 
+TEST(SceneMessages, are_in_the_frame_and_of_the_time_that_they_are_made_for) {
+  const auto message = scene_message(Things().scene, {}, world());
+  EXPECT_EQ(message.header.frame_id, "world");
+  EXPECT_EQ(message.header.stamp, ros::Time(12, 34));
+}
+
 TEST(ObjectMessages, a_transform_is_of_the_link_and_fixtures_have_one) {
   const Things things;
   const auto transforms = object_transforms(things.scene, things.state, world());
