@@ -7,7 +7,7 @@
 #include "mr_hand_interaction/response/grip.h"
 #include "mr_hand_interaction/scene/scene.h"
 #include "mr_hand_interaction/synthetic/random.h"
-#include "support/pinch_scene.h"
+#include "support/one_side_leaves.h"
 #include "support/reaching_hand.h"
 
 namespace mrhi {
@@ -82,15 +82,8 @@ TEST(GraspAssist, does_not_pull_as_the_fingers_leave_and_the_thumb_stays) {
       testing::play(
           simulation, 0.0, kOpens + 0.3, rate,
           [&](double t) {
-            Hand hand = pinch.hand(t, Vector3::Zero());
-            const Vector3 leaving(speed * std::max(0.0, t - kOpens), 0, 0);
-            for (int finger = 1; finger < kFingers; ++finger) {
-              for (int bone = 0; bone < kBonesPerFinger; ++bone) {
-                Capsule& capsule = hand.capsules[static_cast<std::size_t>(capsule_index(finger, bone))];
-                capsule.start += leaving, capsule.end += leaving;
-              }
-            }
-            return hand;
+            return testing::with_fingers_moved(pinch.hand(t, Vector3::Zero()),
+                                               Vector3(speed * std::max(0.0, t - kOpens), 0, 0));
           },
           [&](const Simulation& s) { fastest = std::max(fastest, testing::object_twist(s).linear.norm()); });
       EXPECT_LT(fastest, 0.11) << speed << " m/s, " << rate << " Hz";

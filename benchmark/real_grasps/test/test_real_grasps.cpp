@@ -91,12 +91,12 @@ TEST(Clearance, IsTheDistanceOfTheSkinFromTheBody) {
 }
 
 /// A body at rest at `place`, grasped at 1 s, loaded until 2.1 s, in a hand that opens at 2 s.
-struct Told {
+struct PlayedClosing {
   Recording recording = two_tips(3.0, closing_once(1.0, 2.0, 0.03));
   Closing closing = closings(recording, kCube).at(0);
   Playback playback;
 
-  explicit Told(double place) {
+  explicit PlayedClosing(double place) {
     for (int i = 90; i < 240; ++i)
       playback.moments.push_back({i * kPeriod, Vector3(0, place, 0), Vector3::Zero(), i > 100 && i < 210});
     playback.has_grasps = true;
@@ -107,33 +107,33 @@ struct Told {
 };
 
 TEST(Held, IsWhatIsGraspedAndInTheHandUntilItOpens) {
-  EXPECT_TRUE(Told(0.0).outcome().held);
-  EXPECT_TRUE(Told(0.039).outcome().held) << "nearer than the body is wide";
-  EXPECT_FALSE(Told(0.041).outcome().held);
+  EXPECT_TRUE(PlayedClosing(0.0).outcome().held);
+  EXPECT_TRUE(PlayedClosing(0.039).outcome().held) << "nearer than the body is wide";
+  EXPECT_FALSE(PlayedClosing(0.041).outcome().held);
 }
 
 TEST(Held, NotWhatIsNeverGraspedOrLetGoTooEarly) {
-  Told told(0.0);
-  told.playback.grasp_ended = told.closing.opens - 0.05;
-  EXPECT_TRUE(told.outcome().held) << "within the time that a grasp may end before the hand opens";
-  told.playback.grasp_ended = told.closing.opens - 0.07;
-  EXPECT_FALSE(told.outcome().held);
-  told.playback.grasp_ended.reset();
-  told.playback.grasp_began.reset();
-  EXPECT_FALSE(told.outcome().held);
-  EXPECT_TRUE(told.outcome().carried);
-  told.playback.has_grasps = false;
-  EXPECT_TRUE(told.outcome().held) << "by an engine that does not know grasps";
+  PlayedClosing played(0.0);
+  played.playback.grasp_ended = played.closing.opens - 0.05;
+  EXPECT_TRUE(played.outcome().held) << "within the time that a grasp may end before the hand opens";
+  played.playback.grasp_ended = played.closing.opens - 0.07;
+  EXPECT_FALSE(played.outcome().held);
+  played.playback.grasp_ended.reset();
+  played.playback.grasp_began.reset();
+  EXPECT_FALSE(played.outcome().held);
+  EXPECT_TRUE(played.outcome().carried);
+  played.playback.has_grasps = false;
+  EXPECT_TRUE(played.outcome().held) << "by an engine that does not know grasps";
 }
 
 TEST(Held, CarriedIsNotWhatNothingPresses) {
-  Told told(0.0);
-  for (Moment& moment : told.playback.moments) moment.loaded = false;
-  EXPECT_FALSE(told.outcome().carried);
+  PlayedClosing played(0.0);
+  for (Moment& moment : played.playback.moments) moment.loaded = false;
+  EXPECT_FALSE(played.outcome().carried);
 }
 
-TEST(Held, NudgedAndReleasedAreTold) {
-  const Outcome outcome = Told(0.012).outcome();
+TEST(Held, NudgedAndReleasedAreReported) {
+  const Outcome outcome = PlayedClosing(0.012).outcome();
   EXPECT_NEAR(outcome.early, 0.012, 1e-12);
   ASSERT_TRUE(outcome.released);
   EXPECT_NEAR(*outcome.released, 2.1, 1e-6);
@@ -216,7 +216,7 @@ std::optional<FirstMotion> first_motion_of(const std::string& motion, double asi
   return std::nullopt;
 }
 
-TEST(FirstMotion, IsToldByWhatTheHandDid) {
+TEST(FirstMotion, FollowsFromWhatTheHandDid) {
   ASSERT_TRUE(first_motion_of("slap"));
   EXPECT_EQ(first_motion_of("slap")->cause, MotionCause::sweep);
   ASSERT_TRUE(first_motion_of("tap"));
