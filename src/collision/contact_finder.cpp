@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "segment.h"
 #include "step_motion.h"
 
 namespace mrhi {
@@ -12,6 +13,14 @@ namespace {
 /// kSeparation, so that a contact loses its memory before it ends: a phalanx that returns causes a new
 /// impact.
 constexpr double kMargin = 0.001;
+
+/// True if the ball about a shape is farther from a capsule than the margin, both in the body's frame.
+bool is_beyond(const Capsule& capsule, const PlacedCollider& shape, double margin) {
+  const Vector3 along = capsule.end - capsule.start;
+  const Vector3 nearest = capsule.start + foot(capsule.start, along, shape.pose.position) * along;
+  const double reach = capsule.radius + shape.bounding_radius + margin;
+  return (nearest - shape.pose.position).squaredNorm() > reach * reach;
+}
 
 }  // namespace
 
@@ -83,8 +92,10 @@ void ContactFinder::find_pair(const MovingHand& hand, const NearBody& near, cons
     if (near.clearances[i] - moved > margin) continue;
     const Capsule in_world = hand.capsule(c), in_body = moving.to_local(in_world);
     const std::size_t found_before = found_count_;
-    for (int shape = 0; shape < shapes; ++shape)
+    for (int shape = 0; shape < shapes; ++shape) {
+      if (shapes > 1 && is_beyond(in_body, geometry_.colliders[near.body][shape], margin)) continue;
       find_touch({hand, c, in_world, in_body, near.body, shape, moving, refinements_}, step, margin, before);
+    }
     if (shapes > 1) share_between_shapes(found_before);
   }
 }

@@ -197,7 +197,9 @@ struct Exit {
 ///     separation = min over s of n.a(s) - height = n.start - height + min(rise, 0),
 /// and the end with the lesser n.a comes out last: the start if the segment rises, all of it if it is
 /// parallel.
+/// A segment on the border of a face comes out there, whatever rounding says: flush sides of equal meshes.
 Exit exit_distance(const Segment& segment, const MeshSurface& surface, int index) {
+  constexpr double kBorder = 1e-9;  // [m]
   const MeshSurface::Face& face = surface.faces()[index];
   const double rise = face.normal.dot(segment.along);
   Exit exit;
@@ -205,10 +207,13 @@ Exit exit_distance(const Segment& segment, const MeshSurface& surface, int index
   exit.separation = face.normal.dot(segment.start) - face.height + std::min(rise, 0.0);
   exit.normal = face.normal;
   exit.stretch = {rise > -kParallel ? 0.0 : 1.0, rise < kParallel ? 1.0 : 0.0};
-  const Interval over = surface.over(face, segment, exit.stretch.middle());
-  const Interval through{std::max(over.s0, exit.stretch.s0), std::min(over.s1, exit.stretch.s1)};
-  exit.through = through.s0 <= through.s1;
-  if (exit.through) exit.stretch = through;
+  const auto through = [&](double border) {
+    const Interval over = surface.over(face, segment, exit.stretch.middle(), border);
+    return Interval{std::max(over.s0, exit.stretch.s0), std::min(over.s1, exit.stretch.s1)};
+  };
+  const Interval within = through(0.0), reached = through(kBorder);
+  exit.through = reached.s0 <= reached.s1;
+  if (exit.through) exit.stretch = within.s0 <= within.s1 ? within : reached;
   return exit;
 }
 

@@ -117,9 +117,20 @@ bool MeshSurface::inside(const Face& face, const Vector3& place) const {
   return inside;
 }
 
+/// Seen along the normal.
+bool MeshSurface::on_side(const Face& face, const Vector3& place, double border) const {
+  for (int i = face.first; i < face.first + face.count; ++i) {
+    const Edge& edge = edges_[sides_[i].edge];
+    const Vector3 apart = edge.start + foot(edge.start, edge.along, place) * edge.along - place;
+    if ((apart - apart.dot(face.normal) * face.normal).squaredNorm() <= border * border) return true;
+  }
+  return false;
+}
+
 /// From the last crossing before s to the first after it.
-Interval MeshSurface::around(const Face& face, const Segment& segment, double s) const {
-  if (!inside(face, segment.at(s))) return {1.0, 0.0};
+Interval MeshSurface::around(const Face& face, const Segment& segment, double s, double border) const {
+  if (!inside(face, segment.at(s)) && !(border > 0.0 && on_side(face, segment.at(s), border)))
+    return {1.0, 0.0};
   Interval stretch;
   if (segment.along.isZero(0.0)) return stretch;
   const Seen seen(segment, face.normal);
@@ -132,12 +143,14 @@ Interval MeshSurface::around(const Face& face, const Segment& segment, double s)
 }
 
 /// Of a convex face by its sides' half-planes, outward.(start + s along) <= reach (Cyrus & Beck 1978).
-Interval MeshSurface::over(const Face& face, const Segment& segment, double s) const {
-  if (!face.convex) return around(face, segment, s);
+Interval MeshSurface::over(const Face& face, const Segment& segment, double s, double border) const {
+  if (!face.convex) return around(face, segment, s, border);
   Interval stretch;
   for (int i = face.first; i < face.first + face.count; ++i) {
     const Side& side = sides_[i];
-    const double x0 = side.outward.dot(segment.start) - side.reach, dx = side.outward.dot(segment.along);
+    const double beyond = border > 0.0 ? border * side.outward.norm() : 0.0;
+    const double x0 = side.outward.dot(segment.start) - side.reach - beyond,
+                 dx = side.outward.dot(segment.along);
     stretch.clip(x0, dx, 0.0);
     if ((dx == 0.0 && x0 > 0.0) || stretch.s0 > stretch.s1) return {1.0, 0.0};
   }

@@ -107,8 +107,8 @@ class MeshSurface {
   }
 
   /// Interval of the segment straight above or below the face; the one around s if the face is not convex;
-  /// empty (s0 > s1) if there is none.
-  Interval over(const Face& face, const Segment& segment, double s) const;
+  /// empty (s0 > s1) if there is none. The face reaches so far beyond its sides [m].
+  Interval over(const Face& face, const Segment& segment, double s, double border = 0.0) const;
   /// Part of a capsule's axis on which its pad lies, around the deepest point: that of the features.
   Pad pad(const Segment& axis, const ClosestFeatures& deepest) const;
   /// Distance 1e300 if an edge of the face is nearer than its inside.
@@ -149,7 +149,8 @@ class MeshSurface {
   int face_over(int part, const Vector3& place) const;
   bool is_convex(const Face& face) const;
   bool inside(const Face& face, const Vector3& place) const;
-  Interval around(const Face& face, const Segment& segment, double s) const;
+  bool on_side(const Face& face, const Vector3& place, double border) const;
+  Interval around(const Face& face, const Segment& segment, double s, double border) const;
 
   std::vector<Vector3> corners_, corner_normals_;
   std::vector<Face> faces_;

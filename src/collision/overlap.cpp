@@ -5,6 +5,7 @@
 #include <iterator>
 #include <numeric>
 #include <optional>
+#include <type_traits>
 
 #include "../scene/solid_mesh.h"
 #include "../text/text.h"
@@ -140,34 +141,106 @@ std::optional<bool> is_wall_shared(const Solid& solid, const Vector3& place, con
   return other.at(place + depth * inward).depth > 0.5 * depth;
 }
 
-/// True if most of the first body's thin walls lie in the other. Walls are sampled at triangles of its
-/// meshes.
-bool shares_walls(const Solid& solid, const Solid& other) {
-  constexpr std::size_t kSamples = 24;
-  constexpr int kMinThinWalls = 12;
-  constexpr double kMinSharedRatio = 0.5;
-  for (const PlacedCollider& shape : solid.shapes) {
-    if (shape.mesh == nullptr) continue;
-    const TriangleMesh& mesh = *std::get<Mesh>(shape.shape).triangles;
-    const bool is_closed = shape.mesh->shape().surface.closed();
-    const Pose in_world = solid.pose * shape.pose;
-    int thin = 0, shared = 0;
-    for (std::size_t k = 0; k < kSamples && solid.budget.left > 0.0; ++k) {
-      const auto& triangle = mesh.triangles[sampled(k, mesh.triangles.size())];
-      const Vector3 &first = mesh.vertices[triangle[0]], &second = mesh.vertices[triangle[1]],
-                    &third = mesh.vertices[triangle[2]];
-      const Vector3 normal = (second - first).cross(third - first);
-      if (normal.isZero(0.0)) continue;
-      const Vector3 inward = -(in_world.orientation * Vector3(normal.normalized()));
-      const auto is_shared =
-          is_wall_shared(solid, in_world * Vector3((first + second + third) / 3.0), inward, is_closed, other);
-      if (!is_shared) continue;
-      ++thin;
-      if (*is_shared) ++shared;
-    }
-    if (thin >= kMinThinWalls && shared > kMinSharedRatio * thin) return true;
+/// Whether most places lie in the other body, of those of which is_shared(k) knows it.
+template <class IsShared>
+bool most_are_shared(int least_known, const SearchBudget& budget, const IsShared& is_shared) {
+  constexpr int kSamples = 24;
+  int known = 0, shared = 0;
+  for (int k = 0; k < kSamples && budget.left > 0.0; ++k) {
+    const std::optional<bool> found = is_shared(static_cast<std::size_t>(k));
+    if (!found) continue;
+    ++known;
+    if (*found) ++shared;
   }
-  return false;
+  return known >= least_known && 2 * shared > known;
+}
+
+/// True if most of a mesh's thin walls lie in the other body. Walls are sampled at its triangles.
+bool shares_walls_of_mesh(const Solid& solid, const PlacedCollider& shape, const Solid& other) {
+  constexpr int kMinThinWalls = 12;
+  const TriangleMesh& mesh = *std::get<Mesh>(shape.shape).triangles;
+  const bool is_closed = shape.mesh->shape().surface.closed();
+  const Pose in_world = solid.pose * shape.pose;
+  return most_are_shared(kMinThinWalls, solid.budget, [&](std::size_t k) -> std::optional<bool> {
+    const auto& triangle = mesh.triangles[sampled(k, mesh.triangles.size())];
+    const Vector3 &first = mesh.vertices[triangle[0]], &second = mesh.vertices[triangle[1]],
+                  &third = mesh.vertices[triangle[2]];
+    const Vector3 normal = (second - first).cross(third - first);
+    if (normal.isZero(0.0)) return std::nullopt;
+    const Vector3 inward = -(in_world.orientation * Vector3(normal.normalized()));
+    return is_wall_shared(solid, in_world * Vector3((first + second + third) / 3.0), inward, is_closed,
+                          other);
+  });
+}
+
+/// Half of a shape's least breadth; a mesh's is not known [m].
+double least_half(const ManifoldShape& shape) {
+  if (shape.core) return shape.core->radius;
+  return shape.prism ? shape.prism->half.minCoeff() : shape.bounding_radius;
+}
+
+bool is_thin(const ManifoldShape& shape) {
+  return shape.mesh == nullptr && least_half(shape) < kMaxHalfWall;
+}
+
+/// True if most of the middle of a thin shape lies in the other body.
+bool shares_middle(const Solid& solid, const PlacedCollider& shape, const Solid& other) {
+  constexpr double kNearEnds = 0.7;
+  const Vector3 spacing(0.8191725134, 0.6710436067, 0.5497004779);  // evenly spread (Roberts 2018)
+  const double thin = least_half(shape);
+  const Pose in_world = solid.pose * shape.pose;
+  return most_are_shared(1, solid.budget, [&](std::size_t k) -> std::optional<bool> {
+    const Vector3 turns = static_cast<double>(k) * spacing;
+    const Vector3 part = kNearEnds * (2.0 * (turns.array() - turns.array().floor()) - 1.0);
+    Vector3 place = Vector3::Zero();
+    if (shape.core) {
+      place = shape.core->axis_point(0.5 + 0.5 * part.x());
+    } else {
+      // Of a plate its middle plane, of a rod its axis.
+      for (int axis = 0; axis < 3; ++axis)
+        if (shape.prism->half[axis] > thin) place[axis] = part[axis] * shape.prism->half[axis];
+    }
+    return other.at(in_world * place).depth > 0.5 * thin;
+  });
+}
+
+/// True if most of the first body's thin walls lie in the other.
+bool shares_walls(const Solid& solid, const Solid& other) {
+  return std::any_of(solid.shapes.begin(), solid.shapes.end(), [&](const PlacedCollider& shape) {
+    return shape.mesh != nullptr ? shares_walls_of_mesh(solid, shape, other)
+                                 : is_thin(shape) && shares_middle(solid, shape, other);
+  });
+}
+
+/// The shape without the layer of this depth below its surface; a mesh as it is.
+Shape without_layer(const Shape& shape, double depth) {
+  return std::visit(
+      [depth](auto inner) -> Shape {
+        using Kind = decltype(inner);
+        if constexpr (std::is_same_v<Kind, Box>) {
+          inner.half_extents.array() -= depth;
+        } else if constexpr (!std::is_same_v<Kind, Mesh>) {
+          inner.radius -= depth;
+          if constexpr (std::is_same_v<Kind, Cylinder>) inner.half_length -= depth;
+        }
+        return inner;
+      },
+      shape);
+}
+
+/// True if two shapes, of which one is thin, are in each other: if they still overlap without a layer of
+/// each, which is half as thick as a thin shape's half. Thin plates that cross are less deep in each other
+/// than kOverlap.
+bool cross_each_other(const PlacedCollider& one, const Pose& pose_one, const PlacedCollider& other,
+                      const Pose& pose_other) {
+  if (one.mesh != nullptr || other.mesh != nullptr || !(is_thin(one) || is_thin(other))) return false;
+  const auto inner = [](const ManifoldShape& shape) {
+    return without_layer(shape.shape, 0.5 * std::min(kOverlap, least_half(shape)));
+  };
+  const Shape inner_one = inner(one), inner_other = inner(other);
+  const Manifold manifold =
+      body_manifold(ManifoldShape(inner_one), pose_one, ManifoldShape(inner_other), pose_other, 0.0);
+  return manifold.count > 0 && manifold.deepest().depth > 0.0;
 }
 
 bool has_mesh(const Solid& solid) {
@@ -198,10 +271,18 @@ Overlap overlap(const Scene& scene, const SceneGeometry& geometry, const std::ve
     if (found.shares_walls) return found;
   }
   for (const PlacedCollider& one : of_a.shapes) {
+    const Pose pose_one = of_a.pose * one.pose;
     for (const PlacedCollider& other : of_b.shapes) {
-      const Manifold manifold =
-          body_manifold(one, of_a.pose * one.pose, other, of_b.pose * other.pose, 0.0, kAnyBreadth, &budget);
+      const Pose pose_other = of_b.pose * other.pose;
+      const double reach = one.bounding_radius + other.bounding_radius;
+      if ((pose_one.position - pose_other.position).squaredNorm() > reach * reach) continue;
+      if (budget.left <= 0.0) return found;
+      constexpr double kManifold = 0.3;  // searches
+      budget.spend(kManifold);
+      const Manifold manifold = body_manifold(one, pose_one, other, pose_other, 0.0, kAnyBreadth, &budget);
       for (const ManifoldPoint& point : manifold) found.depth = std::max(found.depth, point.depth);
+      found.shares_walls =
+          found.shares_walls || (manifold.count > 0 && cross_each_other(one, pose_one, other, pose_other));
     }
   }
   return found;

@@ -17,7 +17,7 @@ constexpr double kOverlap = 0.001;
 /// How far body `a` is in body `b`.
 struct Overlap {
   double depth = 0.0;         ///< [m]; 0 if they do not overlap
-  bool shares_walls = false;  ///< most of a mesh's thin walls lie in, or coincide with, those of the other
+  bool shares_walls = false;  ///< of thin walls most lie in the other body, or they cross it
 
   bool is_allowed() const { return depth <= kOverlap && !shares_walls; }
 };

@@ -13,6 +13,7 @@
 #include "mr_hand_interaction/math.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "mr_hand_interaction/stamp_check.h"
+#include "network_thread.h"
 
 namespace mrhi {
 /// Extrapolates the hand stream's time: the last stamp plus the time since its arrival. So stamps may come
@@ -152,7 +153,7 @@ class InputLog {
   void send(SimulationInput input, const RecordedFiles& files) const {
     if (publisher_.getNumSubscribers() == 0) return;
     add(files, input);
-    publisher_.publish(input);
+    publish_large(publisher_, input);
   }
 
   void lost(std::uint64_t frames) { lost_ = frames; }

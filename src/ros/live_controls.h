@@ -46,7 +46,7 @@ class BetweenFrames {
       ends_ = true;
     }
     node_.getCallbackQueue()->removeByID(id());
-    spinner_.stop();
+    beside_.stop();
   }
 
   /// A node handle whose services run in the separate thread, after start().
@@ -56,11 +56,9 @@ class BetweenFrames {
     return beside;
   }
 
-  void start() { spinner_.start(); }
+  void start() { beside_.start(); }
   /// Calls `task` in the separate thread, later.
-  void run_beside(const std::function<void()>& task) {
-    beside_.addCallback(boost::make_shared<QueuedTask>(task));
-  }
+  void run_beside(const std::function<void()>& task) { beside_.run(task); }
   /// Blocks until `task` is done. Rethrows its exception; throws std::runtime_error if the node ends before.
   void run(const std::function<void()>& task) {
     std::future<void> done;
@@ -85,8 +83,7 @@ class BetweenFrames {
   ros::NodeHandle node_;
   std::mutex ending_mutex_;
   bool ends_ = false;
-  ros::CallbackQueue beside_;
-  ros::AsyncSpinner spinner_{1, &beside_};
+  BackgroundQueue beside_;
 };
 
 /// Interactive markers at ~place that move free objects. Feedback arrives in a thread; dragged() polls it.

@@ -3,6 +3,9 @@
 #include <ros/callback_queue.h>
 #include <ros/poll_manager.h>
 #include <ros/ros.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 #include <boost/make_shared.hpp>
 
 #include <atomic>
@@ -12,6 +15,41 @@
 #include <utility>
 
 namespace mrhi {
+
+/// A message of any type, as publish_large() passes it to roscpp.
+struct SerializedBefore {
+  ros::SerializedMessage bytes;
+};
+
+}  // namespace mrhi
+
+namespace ros {
+namespace message_traits {
+template <>
+struct MD5Sum<mrhi::SerializedBefore> {
+  static const char* value(const mrhi::SerializedBefore&) { return "*"; }
+};
+template <>
+struct DataType<mrhi::SerializedBefore> {
+  static const char* value(const mrhi::SerializedBefore&) { return "*"; }
+};
+}  // namespace message_traits
+
+namespace serialization {
+template <>
+inline SerializedMessage serializeMessage(const mrhi::SerializedBefore& message) {
+  return message.bytes;
+}
+}  // namespace serialization
+}  // namespace ros
+
+namespace mrhi {
+
+/// Publishes a large message, from any thread: all other topics wait while roscpp serializes one itself.
+template <class Message>
+void publish_large(const ros::Publisher& publisher, const Message& message) {
+  publisher.publish(SerializedBefore{ros::serialization::serializeMessage(message)});
+}
 
 /// A function in a callback queue.
 class QueuedTask : public ros::CallbackInterface {
@@ -24,6 +62,26 @@ class QueuedTask : public ros::CallbackInterface {
 
  private:
   std::function<void()> run_;
+};
+
+/// A callback queue with a thread of its own, for what hands must not wait for: frames come first where
+/// processors are few.
+class BackgroundQueue : public ros::CallbackQueue {
+ public:
+  ~BackgroundQueue() { stop(); }
+
+  void start() {
+    run([] { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNiceness); });
+    spinner_.start();
+  }
+  /// Waits for the task that runs; later ones are not called.
+  void stop() { spinner_.stop(); }
+  void run(std::function<void()> task) { addCallback(boost::make_shared<QueuedTask>(std::move(task))); }
+
+ private:
+  static constexpr int kNiceness = 10;  // of the thread alone, and of processes that it starts
+
+  ros::AsyncSpinner spinner_{1, this};
 };
 
 /// A callback queue that roscpp's network thread calls, which receives and sends all messages: a frame goes

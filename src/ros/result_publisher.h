@@ -25,6 +25,7 @@
 #include "mr_hand_interaction/ros/markers.h"
 #include "mr_hand_interaction/ros/server_parameters.h"
 #include "mr_hand_interaction/simulation.h"
+#include "network_thread.h"
 #include "result_messages.h"
 
 // Memory layout equals the serialised form: roscpp copies a vector of these at once.
@@ -180,6 +181,7 @@ class ResultPublisher {
         scene_publisher_(node.advertise<mr_hand_interaction::SceneDescription>("scene", 1, true)),
         transforms_(node.advertise<tf2_msgs::TFMessage>("/tf", kTransformQueue)),
         picture_(boost::make_shared<visualization_msgs::MarkerArray>()) {
+    descriptions_.start();
     marker_publisher_ =
         node.advertise<visualization_msgs::MarkerArray>("markers", kQueue, [this](const auto&) {
           if (markers_) markers_->send_all();
@@ -311,12 +313,14 @@ class ResultPublisher {
     return header(to_ros_time(clock_.to_stamp(result.stamp)));
   }
 
-  /// Precedes all other messages of the scene.
+  /// In the background: the message has all triangles.
   void publish_scene_description() {
     if (!std::exchange(scene_changed_, false)) return;
-    const std_msgs::Header when = header(to_ros_time(clock_.to_stamp(simulation_->time())));
-    publish_shared(scene_publisher_,
-                   [&] { return scene_message(simulation_->scene(), simulation_->configuration(), when); });
+    descriptions_.run([publisher = scene_publisher_, scene = simulation_->scene(),
+                       configuration = simulation_->configuration(),
+                       when = header(to_ros_time(clock_.to_stamp(simulation_->time())))] {
+      publish_large(publisher, scene_message(scene, configuration, when));
+    });
   }
 
   void publish_markers(const FrameResult& result, const std_msgs::Header& header) {
@@ -353,6 +357,7 @@ class ResultPublisher {
   visualization_msgs::MarkerArray::Ptr picture_;  // the last one
   ros::Time transforms_stamp_;
   ros::SteadyTime shown_, markers_shown_;
+  BackgroundQueue descriptions_;
 };
 
 }  // namespace mrhi

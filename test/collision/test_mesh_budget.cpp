@@ -135,5 +135,25 @@ TEST(Overlap, takes_no_more_searches_than_its_budget) {
   }
 }
 
+TEST(Overlap, of_bodies_of_many_shapes_has_a_budget_too) {
+  constexpr double kLimit = 100.0;
+  Scene scene;
+  for (const char* name : {"one", "other"}) {
+    Body body;
+    body.name = name;
+    body.mass = 0.1;
+    for (int i = 0; i < 200; ++i) body.shapes.push_back({Sphere{0.0005}, at(1e-6 * i, 1e-6 * i, 0.0)});
+    body.start = at(0, 0, scene.bodies.empty() ? 0.0 : 0.0008);
+    complete(body);
+    scene.bodies.push_back(body);
+  }
+  const SceneGeometry geometry(scene);
+  const std::vector<BodyState> states{start_state(scene.bodies[0]), start_state(scene.bodies[1])};
+  SearchBudget budget;
+  budget.left = kLimit;
+  overlap(scene, geometry, states, 1, 0, budget);
+  EXPECT_NEAR(budget.spent, kLimit, 1.0);
+}
+
 }  // namespace
 }  // namespace mrhi

@@ -145,6 +145,8 @@ def steps():
         # by the last byte (StepKind): meshes, some inside each other
         if seed < 4:
             write("step", "overlapping_%d" % seed, bytes(stream.randrange(256) for _ in range(400)) + bytes([31]))
+            for kind, last in ("rods", 64), ("flush", 96), ("flush_meshes", 120):
+                write("step", "%s_%d" % (kind, seed), bytes(stream.randrange(256) for _ in range(400)) + bytes([last]))
 
 
 if __name__ == "__main__":

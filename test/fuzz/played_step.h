@@ -72,9 +72,13 @@ inline bool is_borne(const Scene& scene) {
          std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) { return body.fixed; });
 }
 
+/// Springs that are no deeper than rounding store nothing.
 inline bool touches(const Simulation& simulation) {
+  constexpr double kRounding = 1e-9;  // [m]
   const SimulationState& state = simulation.state();
-  return !state.body_contacts.empty() || !state.grips.empty() ||
+  return !state.grips.empty() ||
+         std::any_of(state.body_contacts.begin(), state.body_contacts.end(),
+                     [](const BodyContact& contact) { return contact.depth > kRounding; }) ||
          std::any_of(state.contacts.begin(), state.contacts.end(),
                      [](const Contact& contact) { return contact.touching(); });
 }

@@ -9,6 +9,7 @@
 #include "collision/mesh_shapes.h"
 #include "fuzz/target.h"
 #include "mr_hand_interaction/response/contact_model.h"
+#include "scene/solid_mesh.h"
 #include "support/fixtures.h"
 #include "support/posed_hand.h"
 #include "support/postures.h"
@@ -32,17 +33,25 @@ constexpr std::size_t kMostFrames = 40;
 struct StepKind {
   bool overlaps = false;  ///< bodies may start inside each other, or in the same place
   bool meshes = false;    ///< in place of boxes and spheres
+  bool slender = false;   ///< rods
+  bool flush = false;     ///< bodies alike, in a row, each against the next with all sides in one plane
 
-  explicit StepKind(int last) : overlaps(last % 8 == 7), meshes(last / 8 % 4 == 3) {}
+  explicit StepKind(int last)
+      : overlaps(last % 8 == 7),
+        meshes(last / 8 % 4 == 3),
+        slender(last / 32 % 4 == 2),
+        flush(last / 32 % 4 == 3) {}
 };
 
 inline Mesh mesh_of(TriangleMesh triangles) {
   return {std::make_shared<const TriangleMesh>(std::move(triangles)), {}};
 }
 
-inline Shape shape_of(Bytes& bytes, bool meshes) {
+inline Shape shape_of(Bytes& bytes, const StepKind& kind) {
+  const bool meshes = kind.meshes;
   const auto size = [&] { return 0.003 * std::pow(25.0, bytes.between(0.0, 1.0)); };  // 3 to 75 mm
-  const double first = size(), second = size(), third = size();
+  double first = size(), second = size(), third = size();
+  if (kind.slender) first = third = 0.002, second += 0.05;
   const Vector3 half(first, second, third);
   switch (bytes.below(3)) {
     case 0:
@@ -64,14 +73,15 @@ inline Quaternion orientation_of(Bytes& bytes) {
   return Quaternion(1.0, half.x(), half.y(), half.z()).normalized();
 }
 
-inline Body body_of(Bytes& bytes, int number, const Material& material, bool meshes) {
+inline Body body_of(Bytes& bytes, int number, const Material& material, const StepKind& kind) {
   const bool extreme = bytes.one_in(8);
   const double mass = std::pow(10.0, extreme ? bytes.between(-6.0, 6.0) : bytes.between(-2.0, 0.5));
   Body body = testing::box_body(Vector3(0.04, 0.05, 0.06), mass);
   body.name = "body_" + std::to_string(number);
   body.material = material;
   body.fixed = bytes.one_in(4);
-  body.shapes = {{shape_of(bytes, meshes), {}}};
+  body.shapes = {{shape_of(bytes, kind), {}}};
+  if (kind.slender || kind.flush) body.inertia = inertia_of(body.shapes, mass);
   body.start = {vector_of(bytes, 0.15), orientation_of(bytes)};
   if (!body.fixed && bytes.one_in(4)) body.start_twist = {vector_of(bytes, 2.0), vector_of(bytes, 30.0)};
   complete(body);
@@ -143,13 +153,19 @@ inline Scene scene_of(Bytes& bytes, const Configuration& configuration, const St
   if (bytes.one_in(2)) material.restitution = bytes.between(0.0, 1.0);
   const int bodies = 1 + bytes.below(4);
   for (int i = 0; i < bodies; ++i) {
-    Body body = body_of(bytes, i, material, kind.meshes);
-    if (kind.overlaps && i > 0 && bytes.one_in(2)) {
+    Body body = body_of(bytes, i, material, kind);
+    const bool flush = kind.flush && i > 0;
+    if (flush || (kind.overlaps && i > 0 && bytes.one_in(2))) {
       body.shapes = scene.bodies[0].shapes;
       body.start = scene.bodies[0].start;
+      if (flush) {
+        const Vector3 size = box_around(scene.bodies[0].shapes[0]).sizes();
+        body.start.position += body.start.orientation * (i * size.x() * Vector3::UnitX());
+        body.start_twist = scene.bodies[0].start_twist = Twist();
+      }
       complete(body);
     }
-    if (kind.overlaps || is_clear(scene, body)) scene.bodies.push_back(std::move(body));
+    if (kind.overlaps || flush || is_clear(scene, body)) scene.bodies.push_back(std::move(body));
   }
   if (bytes.one_in(3)) hang(bytes, scene, kind.overlaps);
   return scene;

@@ -151,6 +151,7 @@ TEST(GraspAssist, a_hand_that_returns_as_it_held_holds_again) {
     for (const double loss : {0.1, 0.25, 0.5, 1.0})
       EXPECT_LT(off_after_a_loss(loss, Vector3::Zero(), std::nullopt, deep), 0.005) << loss << ' ' << deep;
   EXPECT_GT(off_after_a_loss(0.5, Vector3(0, 0.015, 0.034)), 0.05) << "a hand that merely overlaps";
+  EXPECT_LT(off_after_a_loss(0.5, Vector3(0, 0, 0.026)), 0.031) << "a hand within 3 cm of where it held";
   EXPECT_GT(off_after_a_loss(1.5, Vector3::Zero()), 0.05) << "after too long";
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "collision/mesh_shapes.h"
 #include "mr_hand_interaction/response/contact_model.h"
 #include "support/pinched_cube.h"
 #include "support/tessellated.h"
@@ -92,9 +93,9 @@ TEST(Meshes, a_plate_rests_on_a_table_however_it_is_cut) {
 TEST(Meshes, with_sides_in_one_plane_rest_on_each_other) {
   const Vector3 half = Vector3::Constant(0.02);
   const Body box = box_body(2.0 * half, 0.1);
-  const std::vector<Body> bodies = {box, as_mesh(box, tessellated_box(half, 1)),
-                                    as_mesh(box, tessellated_box(half, 6)),
-                                    as_mesh(box, tessellated_can(half.x(), half.z(), 24, 4, 2))};
+  const std::vector<Body> bodies = {
+      box, as_mesh(box, tessellated_box(half, 1)), as_mesh(box, tessellated_box(half, 6)),
+      as_mesh(box, tessellated_can(half.x(), half.z(), 24, 4, 2)), as_mesh(box, notched_cube(half.x()))};
   for (std::size_t lower = 0; lower < bodies.size(); ++lower) {
     for (std::size_t upper = lower == 0 ? 1 : 0; upper < bodies.size(); ++upper) {
       for (const Vector3& aside : {Vector3(0, 0, 0), Vector3(1e-8, 1e-8, 0), Vector3(0.005, 0, 0)}) {

@@ -192,6 +192,25 @@ TEST(ObjectMessages, what_is_held_is_told_in_the_scenes_order) {
   EXPECT_EQ(held_objects(things.scene, things.state), "rod_0,free");
 }
 
+// Half of what presses: of a pinch, what either finger does.
+TEST(GripForce, is_half_of_what_presses_on_the_named_bodies) {
+  mr_hand_interaction::ContactArray message;
+  const auto add = [&](const char* object, double nx, double fx, double fy) {
+    message.contacts.emplace_back();
+    message.contacts.back().object = object;
+    message.contacts.back().normal.x = nx;
+    message.contacts.back().force.x = fx;
+    message.contacts.back().force.y = fy;
+  };
+  add("cube", 1.0, -3.0, 1.0);
+  add("cube", -1.0, 5.0, -1.0);
+  add("cube", 1.0, 2.0, 0.0);  // pulls
+  add("table", 1.0, -7.0, 0.0);
+  EXPECT_DOUBLE_EQ(grip_force(message, {"cube"}), 4.0);
+  EXPECT_DOUBLE_EQ(grip_force(message, {"cube", "table"}), 7.5);
+  EXPECT_EQ(grip_force(message, {}), 0.0);
+}
+
 TEST(EventMessages, name_the_object_and_the_hand_or_neither) {
   const Things things;
   Event event{5, EventKind::grasp_begin, 2, 7};

@@ -356,6 +356,36 @@ TEST(Overlaps, of_thin_walls_in_one_place_are_refused_and_walls_that_touch_are_n
     EXPECT_EQ(error("wall.obj", place), "") << place;
 }
 
+// Shapes thinner than 1 mm are never 1 mm deep in each other.
+TEST(Overlaps, of_thin_shapes_that_cross_or_hold_each_other_are_refused) {
+  const auto shape = [](const std::string& geometry) {
+    return test::kInertial + ("<collision><geometry>" + geometry + "</geometry></collision>");
+  };
+  const auto error = [&](const std::string& one, const std::string& other, const std::string& origin) {
+    return urdf_error(test::robot(test::link("a", shape(one)) + test::joint("floating", "world", "a") +
+                                  test::link("b", shape(other)) +
+                                  test::joint("floating", "world", "b", origin)));
+  };
+  const std::string slab = "<box size=\"0.06 0.06 0.0005\"/>",
+                    disc = "<cylinder radius=\"0.03\" length=\"0.0005\"/>",
+                    bead = "<sphere radius=\"0.0005\"/>", block = "<box size=\"0.06 0.06 0.06\"/>";
+  const struct {
+    std::string one, other, in, beside;
+  } cases[] = {
+      {slab, slab, "xyz=\"0 0 0\"", "xyz=\"0 0 0.0004\""},
+      {slab, slab, "xyz=\"0.01 0 0\" rpy=\"1.57 0 0\"", "xyz=\"0 0 0.0302\" rpy=\"1.57 0 0\""},
+      {disc, slab, "xyz=\"0 0 0.01\" rpy=\"0 0.7 0\"", "xyz=\"0 0 0.0005\""},
+      {bead, bead, "xyz=\"0 0.0004 0\"", "xyz=\"0 0.0009 0\""},
+      {bead, slab, "xyz=\"0.01 0.01 0\"", "xyz=\"0.01 0.01 0.0007\""},
+      {block, slab, "xyz=\"0 0 0.0294\"", "xyz=\"0 0 0.03\""},
+  };
+  for (const auto& c : cases) {
+    test::expect_words(error(c.one, c.other, c.in),
+                       {"'b' is inside thin walls of 'a'", "allowed: at most 0.001 m"});
+    EXPECT_EQ(error(c.one, c.other, c.beside), "") << c.other << " " << c.beside;
+  }
+}
+
 TEST(Overlaps, of_fixtures_with_each_other_are_their_own_affair) {
   const std::string shelf = test::link("s", test::kBox) + test::joint("fixed", "world", "s") +
                             test::link("t", test::kBox) + test::joint("fixed", "world", "t");

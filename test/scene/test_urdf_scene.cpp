@@ -451,8 +451,12 @@ TEST(UrdfScene, WarnsOfUnitsThatCannotBeMeant) {
       warning("<inertial><mass value=\"0.01\"/></inertial><collision><geometry><box size=\"5e-5 "
               "5e-5 5e-5\"/></geometry></collision>"),
       {"very small", "'thing' measures 5e-05 m"});
-  test::expect_words(warning(std::string("<inertial><mass value=\"150\"/></inertial>") + kBox),
-                     {"grams", "'thing' 150 kg"});
+  const auto of_mass = [](const std::string& mass) {
+    return thing("<inertial><mass value=\"" + mass + "\"/></inertial>" + kBox);
+  };
+  test::expect_words(load(of_mass("150")).warnings.at(0), {"grams", "'thing' 150 kg"});
+  test::expect_words(load(of_mass("3.2")).warnings.at(0), {"grams", "'thing' 3.2 kg"});
+  EXPECT_TRUE(load(of_mass("3.0")).warnings.empty()) << "osmium is denser than most";
 }
 
 // A mug whose file has a mass alone: its centre would be in its bottom.
