@@ -94,9 +94,13 @@ def lines_of(folders, repository=REPOSITORY):
     for folder in folders:
         for path in sorted(glob.glob(os.path.join(repository, "src", folder, "*.cpp"))):
             previous = ";"
+            in_text = False  # a raw string of several lines
             with open(path, encoding="utf-8") as file:
                 for number, line in enumerate(file, 1):
                     line = line.rstrip("\n")
+                    if in_text or 'R"' in line:
+                        in_text = ')"' not in line
+                        continue
                     changed = mutants_of(line, previous)
                     if line.strip() and not line.strip().startswith("//"):
                         previous = line.split("//")[0]

@@ -248,17 +248,40 @@ void IslandProblem::add_point_jacobian(int number, const Vector3& arm, double si
   own += sign * linear - (sign * cross_matrix(arm)).lazyProduct(angular);
 }
 
+/// Of a body's contacts with fixtures and hands, whose slopes are summed: J' (sum J_c' S J_c) J. Unknowns
+/// come from the root to the tips, so that those beyond the body's own do not move it.
+void IslandProblem::add_body_slope(int number) {
+  const Lower6& sum = body_slopes_[static_cast<std::size_t>(number)];
+  if (sum[Cholesky6::at(0, 0)] + sum[Cholesky6::at(1, 1)] + sum[Cholesky6::at(2, 2)] <= 0.0) return;
+  Eigen::Matrix<double, 6, 6> slope;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j <= i; ++j) slope(i, j) = slope(j, i) = step_ * sum[Cholesky6::at(i, j)];
+  const Columns& of = columns_of(number);
+  const auto jacobian = jacobian_.middleRows<6>(6 * number).middleCols(of.first, of.count);
+  Eigen::Index moving = of.count;
+  while (moving > 0 && jacobian.col(moving - 1).isZero(0.0)) --moving;
+  for (Eigen::Index j = 0; j < moving; ++j) {
+    const Eigen::Matrix<double, 6, 1> product = slope * jacobian.col(j);
+    for (Eigen::Index i = j; i < moving; ++i)
+      hessian_(of.first + i, of.first + j) += jacobian.col(i).dot(product);
+  }
+}
+
 /// H = M + h sum (J_c' S J_c + s_T j_c' j_c) - h dt/du, with J_c and j_c the Jacobians of a row's relative
 /// velocity and spin. -dt/du is diagonal and not negative. Only the lower triangle is computed.
 void IslandProblem::factorise_joints() {
   hessian_ = mass_;
+  body_slopes_.assign(wrenches_.size(), Lower6{});
   for (const SpringContact& row : rows_) {
     const SpringResponse& response = row.response;
     if (response.normal_slope <= 0.0 && response.tangential_slope <= 0.0) continue;
+    if (row.a == SpringContact::kNone) {
+      add_slope(row, point_slope(row), row.arm, body_slopes_[row.b]);
+      continue;
+    }
     const Vector3 n = vector(row.spring.normal), tilt = vector(row.tilt);
-    const auto has = [](int number) { return number != SpringContact::kNone; };
     // Of the unknowns only those of the two bodies, or of their linkages, move the point.
-    const Columns b = columns_of(row.b), a = has(row.a) ? columns_of(row.a) : b;
+    const Columns b = columns_of(row.b), a = columns_of(row.a);
     const Columns &low = a.first < b.first ? a : b, &high = a.first < b.first ? b : a;
     const Eigen::Index count = low.count + (low.first == high.first ? 0 : high.count);
     point_jacobian_.setZero(3, count);
@@ -272,7 +295,7 @@ void IslandProblem::factorise_joints() {
       spin_jacobian_.segment(at, columns.count) += (sign * n.transpose()).lazyProduct(angular);
     };
     add(row.b, b, row.arm, 1.0);
-    if (has(row.a)) add(row.a, a, row.arm_a, -1.0);
+    add(row.a, a, row.arm_a, -1.0);
     const Matrix3 slope = step_ * point_slope(row).matrix();
     point_product_ = slope.lazyProduct(point_jacobian_);
     const auto entry = [&](Eigen::Index i) {
@@ -283,6 +306,7 @@ void IslandProblem::factorise_joints() {
         hessian_(entry(i), entry(j)) += point_jacobian_.col(i).dot(point_product_.col(j)) +
                                         step_ * response.torque_slope * spin_jacobian_[i] * spin_jacobian_[j];
   }
+  for (std::size_t body = 0; body < body_slopes_.size(); ++body) add_body_slope(static_cast<int>(body));
   for (const auto& [joint, body, row] : unknowns_)
     if (joint != kNoJoint) hessian_(row, row) += step_ * laws_[row].slope(velocity_[row]);
   factors_.compute(hessian_);

@@ -224,6 +224,7 @@ class IslandProblem {
   void add_joint_forces();
   double joint_energy() const;
   void factorise_joints();
+  void add_body_slope(int number);
   double kinetic_energy(const Vector& velocity) {
     multiply_mass(velocity, momentum_);
     return 0.5 * velocity.dot(momentum_);
@@ -265,6 +266,7 @@ class IslandProblem {
   Matrix jacobian_;  // of the bodies by the unknowns
   PointJacobian point_jacobian_, point_product_;
   Eigen::RowVectorXd spin_jacobian_;
+  std::vector<Lower6> body_slopes_;
   Factors mass_factors_;
   Vector fall_, body_velocity_, body_impulse_;
 };

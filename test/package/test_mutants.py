@@ -3,6 +3,7 @@
 import os
 import re
 import sys
+import tempfile
 import unittest
 
 PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -58,6 +59,13 @@ class Random(unittest.TestCase):
                    if any(file.endswith(".cpp") for file in os.listdir(os.path.join(PACKAGE, "src", name)))}
         self.assertEqual(folders - {"nodes", "without_ros"}, set(random_mutants.SUITES))
         self.assertTrue(set(" ".join(random_mutants.SUITES.values()).split()) <= suites())
+
+    def test_texts_of_several_lines_are_no_code(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.makedirs(os.path.join(folder, "src", "text"))
+            with open(os.path.join(folder, "src", "text", "usage.cpp"), "w") as file:
+                file.write('int a = 1;\nreturn R"(0 done\n  1 < 2\n  3)";\nint b = 2;\n')
+            self.assertEqual([line[1] for line in random_mutants.lines_of(["text"], folder)], [1, 5])
 
     def test_lines_may_become(self):
         def mutants(line, previous=";"):

@@ -180,6 +180,7 @@ TEST_P(GraspObject, is_held_and_carried) {
   const test::Folder folder;
   const Scene scene = scene_of(folder, GetParam());
   const ScriptedMotion motion = grasp_object(scene);
+  EXPECT_STREQ("grasp_object", motion.name.c_str());
   SyntheticHand source({}, motion);
   Simulation simulation(scene, Configuration());
   double carried = 0.0;
