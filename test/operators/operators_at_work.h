@@ -7,6 +7,7 @@
 
 #include "mr_hand_interaction/parameters.h"
 #include "mr_hand_interaction/response/contact_model.h"
+#include "support/temporary_folder.h"
 #include "synthetic/motions.h"
 #include "synthetic/person.h"
 #include "training/operator_trial.h"
@@ -39,24 +40,9 @@ inline SessionHeader simulated_header() {
   return header;
 }
 
-/// An empty folder that goes away with this.
-class Folder {
- public:
-  explicit Folder(const std::string& name)
-      : path_(std::filesystem::path(::testing::TempDir()) / ("operators_" + name)) {
-    std::filesystem::remove_all(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// The row of a session's one trial.
 inline TrialRow play(const Task& task, const OperatorSkill& skill, std::uint64_t seed, double noise) {
-  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  const Folder folder(std::string(test->name()) + std::to_string(seed));
+  const test::Folder folder;
   Session session(task, simulated_header(), 0, folder.path(), 0);
   OperatorStage stage;
   stage.scene_folders = {"config/scenes"};

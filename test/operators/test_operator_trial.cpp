@@ -22,9 +22,8 @@ struct OwnObject {
 class OperatorTakesAny : public ::testing::TestWithParam<OwnObject> {};
 
 /// The shipped task with an object of a user's file, which no shipped grasp knows.
-Task task_with_own(const OwnObject& object, const testing::Folder& folder) {
-  std::filesystem::create_directories(folder.path());
-  const std::string name = object.name, file = folder.path() + "/" + name + ".urdf";
+Task task_with_own(const OwnObject& object, const test::Folder& folder) {
+  const std::string name = object.name, file = folder / (name + ".urdf");
   std::ofstream(file) << "<robot name='" << name << "'><link name='world'/><link name='" << name
                       << "'><inertial><mass value='0.15'/></inertial>" << object.collisions
                       << "</link><joint name='j' type='floating'><parent link='world'/><child link='" << name
@@ -36,7 +35,7 @@ Task task_with_own(const OwnObject& object, const testing::Folder& folder) {
 }
 
 TEST_P(OperatorTakesAny, across_its_narrowest_side_in_weightlessness_and_from_a_table) {
-  const testing::Folder folder(std::string("own_") + GetParam().name);
+  const test::Folder folder;
   Task task = task_with_own(GetParam(), folder);
   for (const double gravity : {0.0, -9.81}) {
     task.gravity = Vector3(0.0, 0.0, gravity);
@@ -59,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& of) { return std::string(of.param.name); });
 
 TEST(OperatorTrial, what_a_hand_cannot_close_on_is_refused_before_anything_is_played) {
-  const testing::Folder folder("own_crate");
+  const test::Folder folder;
   const Task task = task_with_own({"crate", MRHI_SHAPE("<box size='0.3 0.2 0.25'/>")}, folder);
   OperatorStage stage;
   stage.scene_folders = {"config/scenes"};

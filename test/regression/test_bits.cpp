@@ -101,7 +101,7 @@ std::string platform() {
 }
 
 std::string bits_of(const NoisyReplay& run) {
-  const test::TemporaryFolder folder;
+  const test::Folder folder;
   std::vector<JointsFrame> frames = test::motion_frames(run.motion, run.rate, 0);
   const ScriptedMotion motion = make_motion(run.motion);
   for (JointsFrame& frame : frames) {
@@ -253,7 +253,7 @@ std::vector<LoadedScene> loaded_scenes() {
 }
 
 std::string bits_of(const LoadedScene& loaded) {
-  const test::TemporaryFolder folder;
+  const test::Folder folder;
   SceneOptions options;
   options.resolve_package_uri = [](const std::string& uri) { return uri.substr(uri.find('/', 10) + 1); };
   std::string urdf = loaded.file, texts[2];

@@ -202,7 +202,7 @@ Vector3 last_position(const std::string& objects_csv) {
 TEST_P(HeldRecording, gives_the_same_through_replay) {
   const HeldObject& held = GetParam();
   const HeldOutcome outcome = hold(held, file(), 0.0);
-  const test::TemporaryFolder folder;
+  const test::Folder folder;
   ReplayArguments arguments = arguments_of(held, 0.0);
   arguments.input = test::write_recording(folder / "used.csv", used_frames(held, file()));
   arguments.output = folder / "out";

@@ -12,26 +12,9 @@
 #include "mr_hand_interaction/replay/recording_csv.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
+#include "support/temporary_folder.h"
 
 namespace mrhi::test {
-
-/// A folder of its own for the files of one test; gone afterwards.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "mrhi_replay_XXXXXX").string();
-    if (mkdtemp(&name[0]) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
 
 inline std::string text_of(const std::string& file) {
   std::ifstream in(file, std::ios::binary);

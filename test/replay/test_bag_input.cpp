@@ -78,7 +78,7 @@ struct TestBag {
     return all;
   }
 
-  test::TemporaryFolder folder;
+  test::Folder folder;
   std::string file;
   rosbag::Bag bag;
 };
@@ -377,7 +377,7 @@ std::string message_of(const std::string& file) {
 }
 
 TEST(BagInput, a_missing_bag_and_what_cannot_be_one_are_told_in_a_line) {
-  test::TemporaryFolder folder;
+  test::Folder folder;
   EXPECT_EQ(message_of(folder / "missing.bag"),
             (folder / "missing.bag") + ": there is no such file; allowed: a bag that may be read");
   EXPECT_EQ(message_of("/tmp"), "/tmp: is no file; allowed: a bag that may be read");
@@ -421,7 +421,7 @@ TEST(BagInput, corrupt_compressed_bags_are_read_or_refused) {
 }
 
 TEST(BagInput, what_is_no_bag_is_named) {
-  test::TemporaryFolder folder;
+  test::Folder folder;
   std::ofstream(folder / "text.bag") << "no bag";
   for (const char* name : {"text.bag", "missing.bag"}) {
     try {

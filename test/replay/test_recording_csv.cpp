@@ -11,18 +11,19 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "support/temporary_folder.h"
+
 namespace mrhi {
 namespace {
 
 class RecordingFile {
  public:
-  explicit RecordingFile(const std::string& text) { std::ofstream(path_) << text; }
-  ~RecordingFile() { std::remove(path_.c_str()); }
+  explicit RecordingFile(const std::string& text) : path_(folder_.write("recording.csv", text)) {}
   const std::string& path() const { return path_; }
 
  private:
-  std::string path_ = ::testing::TempDir() + "recording_" +
-                      ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv";
+  const test::Folder folder_;
+  const std::string path_;
 };
 
 std::string error_of(const std::string& text) {

@@ -45,7 +45,7 @@ struct Replayed {
     return "";
   }
 
-  test::TemporaryFolder folder;
+  test::Folder folder;
   std::string scene;
   ReplayArguments arguments;
 };

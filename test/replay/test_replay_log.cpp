@@ -163,7 +163,7 @@ struct Replayed {
     return YAML::LoadFile(folder / "out/summary.json");
   }
 
-  test::TemporaryFolder folder;
+  test::Folder folder;
   ReplayArguments arguments;
 };
 
@@ -299,7 +299,7 @@ TEST(ReplayLog, a_state_of_an_older_or_newer_format_gives_one_line_and_begins_at
 }
 
 TEST(ReplayLog, the_scene_is_built_from_the_recording_alone) {
-  const test::TemporaryFolder folder;
+  const test::Folder folder;
   std::filesystem::create_directory(folder / "scene");
   std::filesystem::copy("config/meshes/spanner.stl", folder / "scene/part.stl");
   std::ofstream(folder / "scene/own.urdf")
@@ -359,7 +359,7 @@ TEST(ReplayLog, markers_keep_every_mesh_of_the_recording_beside_them) {
                          ".obj'/></geometry></collision></link></robot>";
     return spawn;
   };
-  const test::TemporaryFolder folder;
+  const test::Folder folder;
   Live live("config/scenes/cube.urdf", Configuration());
   live.begin_recording();
   std::vector<std::string> shapes;
@@ -383,7 +383,7 @@ TEST(ReplayLog, markers_keep_every_mesh_of_the_recording_beside_them) {
 
 // A bag goes to others: a URDF of a stranger must not put files of this machine into it.
 TEST(ReplayLog, a_recording_has_the_scenes_meshes_and_no_other_file_that_the_urdf_names) {
-  const test::TemporaryFolder folder;
+  const test::Folder folder;
   std::filesystem::copy("config/meshes/spanner.stl", folder / "part.stl");
   std::ofstream(folder / "secret") << "a secret";
   std::ofstream(folder / "secret.obj") << "a secret";

@@ -38,7 +38,7 @@ struct Written {
     return test::lines_of(folder / ("new/out/" + name));
   }
 
-  test::TemporaryFolder folder;
+  test::Folder folder;
   Scene scene;
   SimulationState state;
   FrameResult result;
@@ -208,7 +208,7 @@ TEST(Dictionary, every_column_is_in_the_page_of_files) {
 }
 
 TEST(Dictionary, rows_that_are_written_have_a_cell_for_each_column_and_the_schema_lies_beside_them) {
-  const test::TemporaryFolder folder;
+  const test::Folder folder;
   ReplayArguments arguments;
   arguments.scene = "config/scenes/cube.urdf";
   arguments.input = test::write_recording(folder / "nudge.csv", test::motion_frames("nudge", 60.0, 0));

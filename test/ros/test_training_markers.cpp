@@ -2,11 +2,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "ros/marker_layers.h"
 #include "support/fixtures.h"
+#include "support/temporary_folder.h"
 #include "training/trials.h"
 
 namespace mrhi {
@@ -42,20 +42,18 @@ struct Eye {
 class TrainingMarkers : public ::testing::Test {
  protected:
   TrainingMarkers() {
-    std::filesystem::remove_all(folder_);
     header_.participant = "P01";
     header_.group = "beginner";
     header_.handedness = "right";
     header_.condition = "implicit";
     header_.started = "2024-05-06T10:00:00Z";
     header_.software = "0.1.0";
-    session_.emplace(test::shipped_task("pick_and_place"), header_, 0, folder_.string(), 0);
+    session_.emplace(test::shipped_task("pick_and_place"), header_, 0, folder_.path(), 0);
     status_.trial = status_.trials = 1;
     status_.object = "cube";
     status_.instruction = instruction_now(*session_, false, true);
     object_.pose.position.z = 0.22;
   }
-  ~TrainingMarkers() override { std::filesystem::remove_all(folder_); }
 
   std::vector<Marker> shown(const std::string& layer) {
     std::vector<Marker> found;
@@ -65,7 +63,7 @@ class TrainingMarkers : public ::testing::Test {
     return found;
   }
 
-  const std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "mrhi_training_markers";
+  const test::Folder folder_;
   const Body body_ = testing_body();
   SessionHeader header_;
   std::optional<Session> session_;
@@ -179,7 +177,7 @@ TEST_F(TrainingMarkers, the_object_is_highlighted_until_it_is_held) {
 
 // The object leaves the hand at 1 cm/s; drift is its way in two seconds.
 TEST_F(TrainingMarkers, the_result_has_the_drift_in_millimetres) {
-  session_.emplace(test::two_places(), header_, 0, (folder_ / "drift").string(), 0);
+  session_.emplace(test::two_places(), header_, 0, folder_ / "drift", 0);
   session_->begin(0);
   Observation seen = test::Feeder(session_->task()).seen;
   const auto see = [&](const Vector3& from, bool held, double seconds, const Vector3& velocity) {

@@ -194,7 +194,7 @@ TEST(Csv, a_text_is_no_formula_of_a_spreadsheet_and_a_number_stays_one) {
 }
 
 TEST(Csv, a_file_has_numbers_of_twelve_digits) {
-  const test::TemporaryFolder folder;
+  const test::Folder folder;
   CsvFile file(folder / "a.csv", "a,b");
   file << 1.0 / 3.0 << 100'000'000.25;
   file.end_row();

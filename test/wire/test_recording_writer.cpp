@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <fstream>
 
 #include "mr_hand_interaction/replay/recording_csv.h"
+#include "support/temporary_folder.h"
 
 namespace mrhi {
 namespace {
@@ -15,13 +15,13 @@ TEST(RecordingWriter, a_frame_without_hands_is_read_back_as_one) {
   written.resize(3);
   ASSERT_FALSE(written[0].hands.empty() || written[2].hands.empty());
   written[1].hands.clear();
-  const std::string file = ::testing::TempDir() + "mr_hand_interaction_without_hands.csv";
+  const test::Folder folder;
+  const std::string file = folder / "without_hands.csv";
   {
     std::ofstream out(file);
     write_recording_csv(out, written);
   }
   const auto read = read_recording_csv(file);
-  std::remove(file.c_str());
   ASSERT_EQ(read.size(), 3u);
   EXPECT_EQ(read[0].hands.size(), 1u);
   EXPECT_TRUE(read[1].hands.empty());
@@ -33,13 +33,13 @@ TEST(RecordingWriter, the_reader_gets_back_what_was_written_to_the_micrometre) {
   options.motion = "slap";
   options.side = "left";
   const auto written = record_motion(options);
-  const std::string file = ::testing::TempDir() + "mr_hand_interaction_recording_writer.csv";
+  const test::Folder folder;
+  const std::string file = folder / "slap.csv";
   {
     std::ofstream out(file);
     write_recording_csv(out, written);
   }
   const auto read = read_recording_csv(file);
-  std::remove(file.c_str());
   ASSERT_EQ(read.size(), written.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
     EXPECT_NEAR(to_seconds(read[i].stamp - read[0].stamp), to_seconds(written[i].stamp), 1e-6);

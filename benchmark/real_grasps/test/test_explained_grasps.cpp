@@ -83,7 +83,7 @@ class Runs {
  private:
   std::string name(std::size_t i) const { return folder_ / ("runs/" + std::to_string(i)); }
 
-  test::TemporaryFolder folder_;
+  test::Folder folder_;
   std::size_t count_ = 0;
 };
 
