@@ -3,6 +3,7 @@
 #include "mr_hand_interaction/live_simulation.h"
 #include "mr_hand_interaction/scene/save_scene.h"
 #include "scene/scene_files.h"
+#include "simulation/operators.h"
 #include "support/pinch_scene.h"
 
 namespace mrhi {
@@ -162,6 +163,20 @@ TEST_F(OperatorScene, is_held_by_its_restraint_within_reach_and_let_go_again) {
 }
 
 /// The hand with id 5 is of the second of two operators: 5 modulo 2.
+TEST_F(OperatorScene, is_off_course_once_its_motion_changes_within_a_frame) {
+  constexpr double kFrame = 0.008;
+  const Scene scene = load("operator: {}");
+  SimulationState state = Simulation(scene, Configuration()).state();
+  BodyState& moving = state.bodies.at(static_cast<std::size_t>(scene.operators.at(0).body));
+  moving.linear_momentum = 80.0 * Vector3(1.0, 0, 0);
+  Operators operators(scene);
+  operators.begin_frame(kFrame, state);
+  EXPECT_TRUE(operators.begin_step(kFrame, state));
+  EXPECT_TRUE(operators.begin_step(0.75 * kFrame, state));
+  moving.linear_momentum *= -1.0;
+  EXPECT_FALSE(operators.begin_step(0.5 * kFrame, state));
+}
+
 TEST_F(OperatorScene, hands_are_tracked_in_the_frames_of_their_own_operators) {
   Simulation simulation(load("operators: {ann: {}, ben: {start: [1, 0, 0, 0, 0, 1.570796326794897]}}"),
                         Configuration());
