@@ -74,11 +74,11 @@ inline bool is_borne(const Scene& scene) {
 
 /// Springs that are no deeper than rounding store nothing.
 inline bool touches(const Simulation& simulation) {
-  constexpr double kRounding = 1e-9;  // [m]
+  constexpr double kNoDepth = 1e-9;  // [m]
   const SimulationState& state = simulation.state();
   return !state.grips.empty() ||
          std::any_of(state.body_contacts.begin(), state.body_contacts.end(),
-                     [](const BodyContact& contact) { return contact.depth > kRounding; }) ||
+                     [](const BodyContact& contact) { return contact.depth > kNoDepth; }) ||
          std::any_of(state.contacts.begin(), state.contacts.end(),
                      [](const Contact& contact) { return contact.touching(); });
 }
