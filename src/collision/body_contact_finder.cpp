@@ -290,8 +290,7 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
   const std::vector<PlacedCollider>&of_a = geometry_.colliders[ia], &of_b = geometry_.colliders[ib];
   const bool several = of_a.size() + of_b.size() > 2;
   centres_.clear();
-  for (std::size_t j = 0; several && j < of_b.size(); ++j)
-    centres_.push_back(b.pose * of_b[j].pose.position);
+  for (std::size_t j = 0; several && j < of_b.size(); ++j) centres_.push_back(b.pose * of_b[j].pose.position);
   for (std::size_t i = 0; i < of_a.size(); ++i) {
     if (distance_lower_bound(b.pose.position, of_a[i], a.pose) > within) continue;
     const Vector3 centre = several ? a.pose * of_a[i].pose.position : Vector3();
