@@ -288,15 +288,14 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
   const double within =
       b.body.bounding_radius + travel + turned;  // of b's centre: its own turning is in the ball
   const std::vector<PlacedCollider>&of_a = geometry_.colliders[ia], &of_b = geometry_.colliders[ib];
-  const bool several = of_a.size() + of_b.size() > 2;
   centres_.clear();
-  for (std::size_t j = 0; several && j < of_b.size(); ++j) centres_.push_back(b.pose * of_b[j].pose.position);
+  for (const PlacedCollider& shape : of_b) centres_.push_back(b.pose * shape.pose.position);
   for (std::size_t i = 0; i < of_a.size(); ++i) {
     if (distance_lower_bound(b.pose.position, of_a[i], a.pose) > within) continue;
-    const Vector3 centre = several ? a.pose * of_a[i].pose.position : Vector3();
+    const Vector3 centre = a.pose * of_a[i].pose.position;
     for (std::size_t j = 0; j < of_b.size(); ++j) {
       const double reach = of_a[i].bounding_radius + of_b[j].bounding_radius + margin;
-      if (several && (centre - centres_[j]).squaredNorm() > reach * reach) continue;
+      if ((centre - centres_[j]).squaredNorm() > reach * reach) continue;
       SearchBudget budget = SearchBudget::after(work_);
       const ShapePair pair{a, b, of_a[i], of_b[j], budget};
       auto touch = find_manifold(pair, step, followed_, margin);

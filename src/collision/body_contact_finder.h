@@ -43,7 +43,7 @@ class BodyContactFinder {
   double work_ = 0.0;                               // so far in this step, in searches
   double followed_ = 0.0;                           // gap from which contacts are followed in this step [m]
   std::vector<std::optional<StepBox>> step_boxes_;  // by body, of those with an awake neighbour
-  std::vector<Vector3> centres_;  // of the shapes of a pair's second body, if it has several
+  std::vector<Vector3> centres_;                    // of the shapes of a pair's second body, in world [m]
   std::vector<BodyContact> found_;
   std::size_t memory_index_ = 0;  // of the contacts before
 };

@@ -107,7 +107,7 @@ class MeshSurface {
   }
 
   /// Interval of the segment straight above or below the face; the one around s if the face is not convex;
-  /// empty (s0 > s1) if there is none. The face reaches so far beyond its sides [m].
+  /// empty (s0 > s1) if there is none. `border`: width by which the face is extended beyond its sides [m].
   Interval over(const Face& face, const Segment& segment, double s, double border = 0.0) const;
   /// Part of a capsule's axis on which its pad lies, around the deepest point: that of the features.
   Pad pad(const Segment& axis, const ClosestFeatures& deepest) const;

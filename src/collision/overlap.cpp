@@ -228,8 +228,8 @@ Shape without_layer(const Shape& shape, double depth) {
       shape);
 }
 
-/// True if two shapes, of which one is thin, are in each other: if they still overlap without a layer of
-/// each, which is half as thick as a thin shape's half. Thin plates that cross are less deep in each other
+/// True if two shapes, at least one of them thin, still overlap after a layer is removed from the surface of
+/// each: a quarter of a thin shape's thickness, at most kOverlap / 2. Thin plates that cross have less depth
 /// than kOverlap.
 bool cross_each_other(const PlacedCollider& one, const Pose& pose_one, const PlacedCollider& other,
                       const Pose& pose_other) {

@@ -219,12 +219,10 @@ double GaussSeidelSolver::accelerate(double last) {
 }
 
 double GaussSeidelSolver::max_mass_ratio() const {
-  double lightest = 0.0, heaviest = kMaxSpeed;
-  for (std::size_t i = 0; i < free_.size(); ++i) {
-    lightest = std::max(lightest, bodies_[i].inverse_mass);
-    heaviest = std::min(heaviest, bodies_[i].inverse_mass);
-  }
-  return lightest / heaviest;
+  const auto [heaviest, lightest] = std::minmax_element(
+      bodies_.begin(), bodies_.end() - 1,
+      [](const PatchBody& x, const PatchBody& y) { return x.inverse_mass < y.inverse_mass; });
+  return lightest->inverse_mass / heaviest->inverse_mass;
 }
 
 /// Bodies above each other in the longest stack: the largest number of contacts between a body and the

@@ -61,6 +61,11 @@ inline std::string scene_error(const std::string& file, const SceneOptions& opti
   return message;
 }
 
+inline std::string urdf_error(const std::string& xml) {
+  const Folder folder;
+  return scene_error(folder.write("s.urdf", xml));
+}
+
 inline void expect_words(const std::string& message, const std::vector<std::string>& words) {
   for (const std::string& word : words)
     EXPECT_NE(std::string::npos, message.find(word)) << word << "\n" << message;
