@@ -140,6 +140,10 @@ Scene heap_of_12() {
   return crowds::dropped(12, 0.016, "").scene;
 }
 
+Scene heap_of_50() {
+  return crowds::dropped(50, 0.04, "").scene;
+}
+
 Scene pushed_blocks() {
   return crowds::pushed(kPushed).scene;
 }
@@ -165,6 +169,7 @@ const Plan kPlans[] = {
     {"stack_asleep", stack, none, 0.001, 1.0, false, true},
     {"pinch_mesh", pinched_mesh, swinging, 0.001, 0.6, false, true, 0.2},
     {"heap_of_12", heap_of_12, none, 0.001, 0.0, false, true, 0.5},
+    {"heap_of_50_settling", heap_of_50, none, 0.001, 0.84, false, true, 0.05},  // its dearest steps
     {"push_of_20", pushed_blocks, pushing, 0.001, 0.6, false, true, 0.1},
     {"block_of_50_awake", block_of_50, none, 0.001, 0.1, false, false, 0.1},
     {"far_spinning_200", far_spinning_200, none, 0.001, 0.0, false, true, 0.1},

@@ -143,6 +143,9 @@ TEST(Time, a_gap_costs_the_first_frame_after_it_alone) {
   EXPECT_EQ(simulation.advance({at(12.01), {}}), Rejection::none);
   EXPECT_FALSE(simulation.result().restarted);
   EXPECT_EQ(simulation.state().time, at(12.01));
+  // The gap is no interval of the stream: what is far ahead is still left out.
+  EXPECT_EQ(simulation.advance({at(15.0), {}}), Rejection::stamp_ahead);
+  EXPECT_EQ(simulation.advance({at(12.02), {}}), Rejection::none);
 }
 
 TEST(Time, a_stream_of_a_frame_a_minute_is_taken_from_its_third_frame) {
