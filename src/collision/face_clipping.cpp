@@ -280,14 +280,6 @@ class Clipping {
   ContactRegion polygon_, region_;
 };
 
-/// The frame is the one that has a rim, of two the one that may lie within the other.
-bool in_frame_of(const FlatFace& reference, const FlatFace& incident) {
-  if (!incident.is(Outline::circle)) return true;
-  if (!reference.is(Outline::circle)) return false;
-  const bool parallel = -incident.normal.dot(reference.normal) >= kSameFace;
-  return parallel && incident.half[0] >= reference.half[0] * (1.0 + kSameSize);
-}
-
 }  // namespace
 
 /// The rim is out of level by 2 r |slope| from its highest to its lowest, the gradient's direction. Turned by
@@ -305,10 +297,11 @@ std::array<double, 4> rim_angles(double radius, const Place& slope) {
   return {{first, first + kQuarter, first + 2 * kQuarter, first + 3 * kQuarter}};
 }
 
-/// Regions that gaps are taken from stay convex polygons in order, of which reduce() leaves four. The normal
-/// is turned to point out of b: the reference's own points out of the reference.
+/// Regions that gaps are taken from stay convex polygons in order, of which reduce() leaves four. The frame
+/// is the one that has a rim, of two the incident one, which is no larger. The normal is turned to point out
+/// of b: the reference's own points out of the reference.
 Manifold touch(const FlatFace& reference, const FlatFace& incident, bool reference_is_a, double margin) {
-  const bool by_reference = in_frame_of(reference, incident);
+  const bool by_reference = !incident.is(Outline::circle);
   Clipping clipping(by_reference ? reference : incident, by_reference ? incident : reference, by_reference,
                     by_reference == reference_is_a);
   ContactRegion region = clipping.region();

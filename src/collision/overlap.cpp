@@ -280,7 +280,11 @@ Overlap overlap(const Scene& scene, const SceneGeometry& geometry, const std::ve
       constexpr double kManifold = 0.3;  // searches
       budget.spend(kManifold);
       const Manifold manifold = body_manifold(one, pose_one, other, pose_other, 0.0, kAnyBreadth, &budget);
-      for (const ManifoldPoint& point : manifold) found.depth = std::max(found.depth, point.depth);
+      for (const ManifoldPoint& point : manifold) {
+        if (point.depth <= found.depth) continue;
+        found.depth = point.depth;
+        found.apart = point.depth * manifold.normal_of(point.region);
+      }
       found.shares_walls =
           found.shares_walls || (manifold.count > 0 && cross_each_other(one, pose_one, other, pose_other));
     }
@@ -305,28 +309,38 @@ std::vector<int> mechanisms(const Scene& scene) {
   return first;
 }
 
-/// see(a, b, overlap), until it returns false.
-template <class See>
-void each_overlap(const Scene& scene, bool in_mechanisms, const See& see) {
-  if (in_mechanisms && scene.joints.empty()) return;
-  const SceneGeometry geometry(scene);
-  std::vector<BodyState> states;
-  std::transform(scene.bodies.begin(), scene.bodies.end(), std::back_inserter(states), start_state);
-  const std::vector<int> first = mechanisms(scene);
-  for (std::size_t a = 0; a < scene.bodies.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      const Body &one = scene.bodies[a], &other = scene.bodies[b];
-      if ((one.fixed && other.fixed) || (first[a] == first[b]) != in_mechanisms || !are_near(one, other) ||
-          are_joined(scene, a, b))
-        continue;
-      constexpr double kAtLoading = 2e5;  // searches: not bounded by a step
-      SearchBudget budget;
-      budget.left = kAtLoading;
-      const Overlap found = overlap(scene, geometry, states, a, b, budget);
-      if (!found.is_allowed() && !see(a, b, found)) return;
-    }
+/// The bodies of a scene where they start.
+struct StartingBodies {
+  explicit StartingBodies(const Scene& of) : scene(of), geometry(of), first(mechanisms(of)) {
+    std::transform(of.bodies.begin(), of.bodies.end(), std::back_inserter(states), start_state);
   }
-}
+
+  /// see(a, b, overlap) for pairs that overlap, until it returns false. Returns the work of searches.
+  template <class See>
+  double each_overlap(bool in_mechanisms, const See& see) const {
+    double work = 0.0;
+    for (std::size_t a = 0; a < scene.bodies.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const Body &one = scene.bodies[a], &other = scene.bodies[b];
+        if ((one.fixed && other.fixed) || (first[a] == first[b]) != in_mechanisms || !are_near(one, other) ||
+            are_joined(scene, a, b))
+          continue;
+        constexpr double kAtLoading = 2e5;  // searches: not bounded by a step
+        SearchBudget budget;
+        budget.left = kAtLoading;
+        const Overlap found = overlap(scene, geometry, states, a, b, budget);
+        work += budget.spent;
+        if ((found.depth > 0.0 || found.shares_walls) && !see(a, b, found)) return work;
+      }
+    }
+    return work;
+  }
+
+  const Scene& scene;
+  const SceneGeometry geometry;
+  const std::vector<int> first;
+  std::vector<BodyState> states;
+};
 
 }  // namespace
 
@@ -334,7 +348,8 @@ std::string overlaps_at_start(const Scene& scene) {
   constexpr int kMaxNamed = 5;
   std::string all;
   int named = 0;
-  each_overlap(scene, false, [&](std::size_t a, std::size_t b, const Overlap& found) {
+  StartingBodies(scene).each_overlap(false, [&](std::size_t a, std::size_t b, const Overlap& found) {
+    if (found.is_allowed()) return true;
     all += (all.empty() ? "'" : ", '") + scene.bodies[a].name + "' is " +
            (found.shares_walls ? "inside thin walls of '" : text::number(found.depth) + " m in '") +
            scene.bodies[b].name + "'";
@@ -343,10 +358,42 @@ std::string overlaps_at_start(const Scene& scene) {
   return all;
 }
 
+// Pair by pair, half by each of two that may move, until none overlaps: a row spreads from its ends.
+std::vector<double> part_at_start(Scene& scene) {
+  constexpr double kTouching = 1e-7;  // [m]: rounding of a file's numbers
+  constexpr int kMaxRounds = 200;
+  constexpr double kMaxWork = 1e6;  // searches, a second or two
+  StartingBodies starting(scene);
+  const auto move = [&](std::size_t body, const Vector3& by) {
+    scene.bodies[body].start.position += by;
+    starting.states[body].pose.position = scene.bodies[body].start.position;
+  };
+  const std::vector<BodyState> before = starting.states;
+  double work = 0.0;
+  bool moved = true;
+  for (int round = 0; moved && round < kMaxRounds && work < kMaxWork; ++round) {
+    moved = false;
+    work += starting.each_overlap(false, [&](std::size_t a, std::size_t b, const Overlap& found) {
+      const bool a_moves = scene.bodies[a].flies, b_moves = scene.bodies[b].flies;
+      if (found.depth <= kTouching || !(a_moves || b_moves)) return true;
+      const Vector3 apart = (a_moves && b_moves ? 0.5 : 1.0) * found.apart;
+      if (a_moves) move(a, apart);
+      if (b_moves) move(b, -apart);
+      moved = moved || apart != Vector3::Zero();
+      return true;
+    });
+  }
+  std::vector<double> distances;
+  for (std::size_t b = 0; b < before.size(); ++b)
+    distances.push_back((starting.states[b].pose.position - before[b].pose.position).norm());
+  return distances;
+}
+
 std::vector<std::pair<int, int>> overlaps_in_mechanisms(const Scene& scene) {
   std::vector<std::pair<int, int>> pairs;
-  each_overlap(scene, true, [&](std::size_t a, std::size_t b, const Overlap&) {
-    pairs.emplace_back(static_cast<int>(a), static_cast<int>(b));
+  if (scene.joints.empty()) return pairs;
+  StartingBodies(scene).each_overlap(true, [&](std::size_t a, std::size_t b, const Overlap& found) {
+    if (!found.is_allowed()) pairs.emplace_back(static_cast<int>(a), static_cast<int>(b));
     return true;
   });
   return pairs;

@@ -16,10 +16,12 @@ constexpr double kOverlap = 0.001;
 
 /// How far body `a` is in body `b`.
 struct Overlap {
-  double depth = 0.0;         ///< [m]; 0 if they do not overlap
+  double depth = 0.0;  ///< [m]; 0 if they do not overlap
+  Vector3 apart =
+      Vector3::Zero();        ///< displacement of `a` that parts them where they are deepest; 0: unknown [m]
   bool shares_walls = false;  ///< of thin walls most lie in the other body, or they cross it
 
-  bool is_allowed() const { return depth <= kOverlap && !shares_walls; }
+  bool is_allowed() const { return depth <= kOverlap * (1.0 + 1e-6) && !shares_walls; }  // but for rounding
 };
 
 /// With a mesh the depth may be less than the overlap, but it is above kOverlap whenever the two share a ball
@@ -30,6 +32,10 @@ Overlap overlap(const Scene& scene, const SceneGeometry& geometry, const std::ve
 /// "'cube' is 0.02 m in 'table'" for the first few pairs whose overlap at the start is not allowed; empty:
 /// none. Fixtures may overlap each other, and so may bodies of one mechanism.
 std::string overlaps_at_start(const Scene& scene);
+
+/// Moves free bodies apart that overlap where they start: their contact would push them apart with an energy
+/// that nobody has given. Bodies on joints stay. Returns by how far each body was moved [m].
+std::vector<double> part_at_start(Scene& scene);
 
 /// Pairs of bodies of one mechanism that no joint connects directly and whose overlap at the start is not
 /// allowed: they do not touch each other. A mechanism is all bodies that joints connect; all fixtures belong

@@ -98,7 +98,11 @@ ParameterEntry choice(const std::string& name, const std::vector<NamedValue<T>>&
   return {name,
           text::joined(text::names_of(options)),
           [=](Configuration& configuration, const YAML::Node& node) {
-            const auto* const chosen = node.IsScalar() ? text::find_named(options, node.Scalar()) : nullptr;
+            // Python and other writers of YAML have True and TRUE.
+            const std::string word = !node.IsScalar()          ? ""
+                                     : std::is_same_v<T, bool> ? text::in_lower_case(node.Scalar())
+                                                               : node.Scalar();
+            const auto* const chosen = text::find_named(options, word);
             if (chosen != nullptr) access(configuration) = chosen->value;
             return chosen != nullptr;
           },

@@ -55,7 +55,7 @@ double spread(const Body& body) {
 /// Largest rotation of the momentum in the body in a part of a step [rad]: the series' remainders are below
 /// rounding.
 constexpr double kMaxPartPath = 0.025;
-/// Largest rotation of the body in a part of a step [rad].
+/// Largest rotation of the body about its momentum in a part of a step [rad].
 constexpr double kMaxTurn = 0.25;
 
 double series(double, double last) {
@@ -117,6 +117,10 @@ class MomentumPath {
     return at(s, za * series(za, 1.0 / 2.0, 1.0 / 8.0, 1.0 / 16.0),
               zb * series(zb, 1.0 / 2.0, 1.0 / 8.0, 1.0 / 16.0), less, series(less, 1.0, 1.0, 1.0, 1.0));
   }
+  /// Bound of the square of the rate at which the momentum turns in the body [1/s^2]; the same at any place
+  /// of the path: A and B are integrals of the motion, and |m'|^2 <= (A + B) |m|^2. A slender body that
+  /// tumbles end over end has a small one.
+  double max_squared_rate() const { return a_ + b_; }
   /// Rate of a principal momentum.
   Triple slope(const Triple& m) const { return {j_.x * (m.y * m.z), j_.y * (m.x * m.z), j_.z * (m.x * m.y)}; }
 
@@ -246,6 +250,14 @@ void turn_part(const Body& body, const Vector3& angular_momentum, double step, Q
   turn_on(cosine - cosine * e, axes.to_body(v), q);
 }
 
+/// Square of the number of parts that a step needs; less than 1 if it may be longer.
+double squared_parts(const Body& body, const Vector3& angular_momentum, double step, const Quaternion& q) {
+  const Triple m = PrincipalAxes(body).along(to_body(q, triple(angular_momentum)));
+  const Triple moments = triple(body.inverse_moments);
+  const double path = step / kMaxPartPath, turn = step / kMaxTurn * each(moments, m).dot(m);
+  return std::max(path * path * MomentumPath(m, moments).max_squared_rate(), turn * turn / m.dot(m));
+}
+
 // x += h p / m + h^2 g / 2 with p at the start of the step, then p += m h g. If contacts were solved
 // implicitly, the caller passes g = 0: p is then that of the end, and x += h v(h) is backward Euler's.
 void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) {
@@ -256,20 +268,20 @@ void fly_on(double mass, const Vector3& gravity, double step, BodyState& state) 
 
 }  // namespace
 
-// In parts of equal length.
+// In parts of equal length: what limits them is the same all along the path. First by a bound that needs no
+// root and no momentum in the body, and holds for most steps:
 //
-//     quickness |L|^2 h^2 <= 1,     quickness = max((1/I_min - 1/I_max) / kMaxPartPath, (1/I_min) /
-//     kMaxTurn)^2
+//     A + B <= (1/I_min - 1/I_max)^2 |L|^2,     2 E / |L| <= |L| / I_min
 //
-// for a step of one part. Squares are compared: a root of |L|^2 would cost more than all else. The form
-// !(x > y) is also true for NaN.
+// The form !(x > y) is also true for NaN, and the minimum is the first of two if the second one is NaN.
 void free_rotation(const Body& body, const Vector3& angular_momentum, double step, Quaternion& orientation) {
   const double squared = angular_momentum.squaredNorm();
   if (!(squared > kMinSquaredMomentum)) return;
   const double limit = std::max(spread(body) / kMaxPartPath, body.inverse_moments.maxCoeff() / kMaxTurn);
-  const double squared_parts = limit * limit * squared * (step * step);
-  if (squared_parts <= 1.0) return turn_part(body, angular_momentum, step, orientation);
-  const double parts = std::sqrt(squared_parts), count = std::min(std::ceil(parts), kMaxParts);
+  const double bound = limit * limit * squared * (step * step);
+  if (bound <= 1.0) return turn_part(body, angular_momentum, step, orientation);
+  const double parts = std::sqrt(std::min(bound, squared_parts(body, angular_momentum, step, orientation)));
+  const double count = std::clamp(std::ceil(parts), 1.0, kMaxParts);
   for (int i = 0; i < static_cast<int>(count); ++i)
     turn_part(body, angular_momentum, step / std::max(parts, count), orientation);
 }

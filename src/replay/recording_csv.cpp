@@ -177,6 +177,7 @@ std::optional<double> CsvColumns::number(const std::string& column) const {
     if (cells_[i].empty() || cells_[i] == "NA") return std::nullopt;  // R's word for a missing value
     const auto value = text::to_number(cells_[i]);
     if (!value) fail(column, text::quoted(cells_[i], 40) + " is not a number");
+    if (std::isnan(*value)) return std::nullopt;  // numpy's
     return value;
   }
   return std::nullopt;

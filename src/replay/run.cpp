@@ -114,6 +114,7 @@ bool ReplayRun::frame(const HandFrame& hands, const std::optional<Nanoseconds>& 
   while (summary.step_time.measure([&] { return simulation.step(); })) ++summary.steps;
   for (const std::string& what : simulation.end().not_finite) reject("not finite", what);
   ++summary.frames;
+  if (last_stamp_ && hands.stamp > *last_stamp_) intervals_.push_back(to_seconds(hands.stamp - *last_stamp_));
   result(simulation);
   return true;
 }
@@ -158,15 +159,21 @@ void ReplayRun::check_end() {
   if (!rejected.empty())
     progress.line("replay: frames rejected in all: " + text::joined(rejected) +
                   "; used: " + std::to_string(summary.frames));
-  if (summary.frames == 0) throw std::runtime_error(summary.input + ": no frame that can be used");
+  if (summary.frames == 0)
+    throw std::runtime_error(
+        summary.input + ": no frame that can be used" +
+        (summary.rejected.empty() ? "; it has none: record while a tracker publishes" : ""));
   writer_->flush();
-  // Range of a tracker's mean interval [s], and number of frames that are needed to check it.
+  // Range of a tracker's median interval [s], and number of them that is needed to check it.
   constexpr double kMinInterval = 0.0003, kMaxInterval = 0.5;
-  constexpr int kMinFrames = 20;
-  const double interval = seconds() / std::max<double>(1.0, static_cast<double>(summary.frames) - 1.0);
-  if (summary.frames < kMinFrames || (interval > kMinInterval && interval < kMaxInterval)) return;
+  constexpr std::size_t kMinIntervals = 20;
+  if (intervals_.size() < kMinIntervals) return;
+  const auto middle = intervals_.begin() + static_cast<std::ptrdiff_t>(intervals_.size() / 2);
+  std::nth_element(intervals_.begin(), middle, intervals_.end());
+  const double interval = *middle;
+  if (interval > kMinInterval && interval < kMaxInterval) return;
   progress.line("replay: " + summary.input + ": frames are " + text::number(interval) +
-                " s apart on average; usual: 0.001 to 0.1 s. Stamps are in seconds; are these " +
+                " s apart; usual: 0.001 to 0.1 s. Stamps are in seconds; are these " +
                 (interval > kMaxInterval ? "milliseconds or microseconds?" : "1000 times too small?"));
 }
 

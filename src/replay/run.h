@@ -116,6 +116,7 @@ class ReplayRun {
   std::unique_ptr<ResultWriter> writer_;
   ViewWriter markers_;
   std::optional<Nanoseconds> first_stamp_, last_stamp_;
+  std::vector<double> intervals_;  ///< between accepted frames [s]
 };
 
 /// Runs all frames through the simulation.

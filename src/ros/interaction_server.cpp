@@ -37,6 +37,7 @@ namespace {
 
 constexpr int kHandQueue = 10;
 constexpr Nanoseconds kNoTime = std::numeric_limits<Nanoseconds>::min();  // before all others
+constexpr Nanoseconds kSteppedClock = 10'000'000'000;                     // no scene is so slow in a frame
 constexpr Nanoseconds kMaxDelay = 100'000'000;                            // of a frame's arrival
 const ros::WallDuration kIdlePeriod(1.0 / 30);
 
@@ -201,9 +202,10 @@ struct InteractionServer::Impl {
     const Nanoseconds left_out = time - reached - to_nanoseconds(simulation.configuration().step);
     if (left_out <= 0) return 0;
     clock_.leave_out(left_out);
-    diagnostics_.rejected(
-        "slower than real time",
-        text::number(1e3 * to_seconds(left_out)) + " ms are left out; allowed: fewer bodies, longer steps");
+    diagnostics_.rejected("slower than real time",
+                          text::number(1e3 * to_seconds(left_out)) +
+                              " ms are left out; allowed: fewer bodies, longer steps" +
+                              (left_out > kSteppedClock ? ", a tracker whose clock does not step" : ""));
     return left_out;
   }
 

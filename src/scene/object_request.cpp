@@ -62,12 +62,16 @@ LinkedBody placed_urdf(const ObjectRequest& request, UrdfDocument& document) {
 void check_motion(const ObjectRequest& request) {
   const Pose& pose = request.pose;
   const bool unit = std::abs(pose.orientation.norm() - 1.0) < 0.01;  // not for NaN either
-  if (!pose.position.allFinite() || !unit) {
-    throw SceneError(kSource + ": this pose is not allowed; allowed: finite numbers, a unit quaternion");
-  }
-  if (!request.twist.linear.allFinite() || !request.twist.angular.allFinite()) {
-    throw SceneError(kSource + ": this twist is not allowed; allowed: finite numbers");
-  }
+  const auto refuse = [](const std::string& what, const Vector3& value) {
+    throw SceneError(kSource + ": " + what + text::vector(value) +
+                     " is not allowed; allowed: finite numbers");
+  };
+  if (!pose.position.allFinite()) refuse("position ", pose.position);
+  if (!unit)
+    throw SceneError(kSource + ": orientation " + text::quaternion(pose.orientation) +
+                     " is not allowed; allowed: a unit quaternion [x, y, z, w]");
+  if (!request.twist.linear.allFinite()) refuse("linear velocity ", request.twist.linear);
+  if (!request.twist.angular.allFinite()) refuse("angular velocity ", request.twist.angular);
 }
 
 Scene scene_of_body(const ObjectRequest& request, const SceneOptions& options) {

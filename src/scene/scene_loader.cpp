@@ -343,17 +343,23 @@ void join_bodies(const std::string& source, Scene& scene) {
 }
 
 /// Refuses bodies that overlap at the start: they would repel each other violently, and many of them would
-/// take longer than a step may.
+/// take longer than a step may. Those that overlap by little are moved apart.
 void check_overlaps(const std::string& file, Scene& scene) {
   Warnings warnings;
   for (const auto& [a, b] : overlaps_in_mechanisms(scene))
     warnings.add("links of one mechanism that overlap where they start do not touch each other",
                  "'" + scene.bodies[b].name + "' and '" + scene.bodies[a].name + "'");
-  for (const std::string& line : warnings.lines()) scene.warnings.push_back(line);
   const std::string overlaps = overlaps_at_start(scene);
-  if (overlaps.empty()) return;
-  throw SceneError(file + ": " + text::one_line(overlaps, 400) + "; allowed: at most " +
-                   text::number(kOverlap) + " m");
+  if (!overlaps.empty())
+    throw SceneError(file + ": " + text::one_line(overlaps, 400) + "; allowed: at most " +
+                     text::number(kOverlap) + " m");
+  const std::vector<double> moved = part_at_start(scene);
+  constexpr double kTold = 1e-5;  // [m]
+  for (std::size_t b = 0; b < moved.size(); ++b)
+    if (moved[b] > kTold)
+      warnings.add("objects that overlap where they start are moved apart",
+                   "'" + scene.bodies[b].name + "' by " + text::number(moved[b]) + " m");
+  for (const std::string& line : warnings.lines()) scene.warnings.push_back(line);
 }
 
 std::string find_scene_file(const std::string& scene, const std::vector<std::string>& directories) {
@@ -364,8 +370,9 @@ Scene load_scene(const std::string& urdf_file, const SceneOptions& options) {
   Scene scene;
   scene.name = fs::path(urdf_file).stem().string();
   const std::optional<std::string> xml = file_text(urdf_file, kMaxXmlBytes + 1);
-  if (!xml || xml->empty()) throw SceneError(urdf_file + ": cannot be read; allowed: a readable URDF file");
-  read_urdf(urdf_file, fs::path(urdf_file).parent_path().string(), *xml, options, scene);
+  if (!xml) throw SceneError(urdf_file + ": cannot be read; allowed: a readable URDF file");
+  if (xml->empty()) throw SceneError(urdf_file + ": this file is empty; allowed: a URDF");
+  read_urdf(urdf_file, fs::absolute(urdf_file).parent_path().string(), *xml, options, scene);
   const Bounds usual = scene.bounds;
   const fs::path settings = fs::path(urdf_file).replace_extension(".yaml");
   if (fs::exists(settings)) apply_scene_yaml(settings.string(), scene);

@@ -160,7 +160,7 @@ LinkedBody only_body(const std::string& source, UrdfDocument& document);
 
 /// Calls arrange_joints(), but throws SceneError.
 void join_bodies(const std::string& source, Scene& scene);
-/// Throws SceneError for bodies that overlap at the start.
+/// Throws SceneError for bodies that overlap at the start by more than is allowed; parts the others.
 void check_overlaps(const std::string& source, Scene& scene);
 
 /// Sets gravity, bounds, materials, twists, joints and operators of a scene from its YAML file. Properties

@@ -26,8 +26,8 @@ Pose checked_pose(const std::string& name, const Pose& pose, const Bounds& bound
   check_in_bounds(name, pose.position, bounds);
   const double size = pose.orientation.norm();
   if (!(std::abs(size - 1.0) < 0.01))
-    throw std::invalid_argument("'" + name +
-                                "': this orientation is not allowed; allowed: a unit quaternion");
+    throw std::invalid_argument("'" + name + "': orientation " + text::quaternion(pose.orientation) +
+                                " is not allowed; allowed: a unit quaternion [x, y, z, w]");
   Pose checked = pose;
   if (size != 1.0) checked.orientation.normalize();
   return checked;

@@ -63,6 +63,11 @@ std::string vector(const Vector3& value) {
   return "[" + number(value.x()) + ", " + number(value.y()) + ", " + number(value.z()) + "]";
 }
 
+std::string quaternion(const Quaternion& value) {
+  return "[" + number(value.x()) + ", " + number(value.y()) + ", " + number(value.z()) + ", " +
+         number(value.w()) + "]";
+}
+
 std::vector<std::string> words(const std::string& text) {
   std::istringstream stream(text);
   return {std::istream_iterator<std::string>(stream), {}};

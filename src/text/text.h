@@ -19,6 +19,7 @@ std::string number(double value);
 std::string exact(double value);
 std::string exact(const Vector3& value);  ///< "[x, y, z]"
 std::string vector(const Vector3& value);
+std::string quaternion(const Quaternion& value);  ///< "[x, y, z, w]"
 /// A text in the format of printf.
 std::string format(const char* form, ...) __attribute__((format(printf, 1, 2)));
 /// Converts a whole text to a number, with a decimal point in any locale; empty for any other text.

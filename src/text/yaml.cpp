@@ -168,13 +168,14 @@ void YamlElement::refuse(const std::string& allowed) const {
 }
 
 std::vector<std::string> checked_keys(const YamlElement& map, const std::vector<std::string>& known) {
+  if (map.node.IsNull()) return {};  // all its lines are commented out
   if (!map.node.IsMap()) map.refuse("a map with the keys " + text::joined(known));
   std::vector<std::string> keys;
   std::set<std::string> seen;
   for (const auto& entry : map.node) {
     const std::string key = yaml_text(entry.first);
     if (std::find(known.begin(), known.end(), key) == known.end()) {
-      map.fail("unknown key '" + key + "'; allowed: " + text::joined(known));
+      map.fail("unknown key '" + key + "'; allowed: " + text::joined_or_none(known));
     }
     if (!seen.insert(key).second) map.fail("key '" + key + "' is given twice; allowed: once");
     keys.push_back(key);

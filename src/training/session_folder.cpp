@@ -135,7 +135,8 @@ std::vector<Field> identity(const SessionHeader& header) {
 }
 
 std::string field_text(const YAML::Node& node) {
-  if (!node.IsSequence()) return node ? yaml_text(node) : "nothing";
+  if (!node) return "nothing";
+  if (!node.IsSequence()) return yaml_text(node);
   std::vector<std::string> items;
   for (const auto& item : node) items.push_back(yaml_text(item));
   return "[" + text::joined(items) + "]";

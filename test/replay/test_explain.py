@@ -288,18 +288,18 @@ class CommandsTest(Folders):
         with open(recording, encoding='ascii') as file:
             header, *rows = file.readlines()[:50]
         self.assertTrue(header.startswith('time_s,'))
-        for factor, question in ((1000.0, 'are these milliseconds or microseconds?'), (0.001, 'are these 1000 times too small?'),
-                                 (1.0, '')):
-            with self.subTest(factor=factor):
-                csv = os.path.join(self.folder, '%g.csv' % factor)
+        for factor, pause, question in ((1000.0, 0.0, 'are these milliseconds or microseconds?'),
+                                        (0.001, 0.0, 'are these 1000 times too small?'), (1.0, 0.0, ''), (1.0, 1000.0, '')):
+            with self.subTest(factor=factor, pause=pause):
+                csv = os.path.join(self.folder, '%g_%g.csv' % (factor, pause))
                 with open(csv, 'w', encoding='ascii') as file:
                     file.write(header)
-                    for row in rows:
+                    for i, row in enumerate(rows):
                         time, rest = row.split(',', 1)
-                        file.write('%r,%s' % (factor * float(time), rest))
+                        file.write('%r,%s' % (factor * float(time) + pause * (i > 25), rest))
                 done = replay('--scene', 'cube', '--input', csv, '--output', csv + '.out')
                 self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertEqual('s apart on average' in done.stderr, bool(question), done.stderr)
+                self.assertEqual('s apart; usual' in done.stderr, bool(question), done.stderr)
                 self.assertIn(question, done.stderr)
 
     def test_a_recording_is_replayed_with_the_options_that_follow_it(self):

@@ -52,6 +52,17 @@ TEST(RecordingCsv, QuotesAndBlanksAroundCellsAreNoPartOfThem) {
   EXPECT_FALSE(frames[0].hands[0].palm_width);
 }
 
+// As numpy and pandas write what is missing.
+TEST(RecordingCsv, NanIsAMissingValue) {
+  const RecordingFile file(std::string(kHeader) + "0,0.5,1,7,1,2,3,nan,NaN,nan,-nan\n");
+  const std::vector<JointsFrame> frames = read_recording_csv(file.path());
+  EXPECT_EQ(Vector3(1, 2, 3), frames.at(0).hands.at(0).wrist.value());
+  EXPECT_FALSE(frames[0].hands[0].finger_width[1]);
+  EXPECT_FALSE(frames[0].hands[0].joints[1][1]);
+  EXPECT_EQ(":2: index_j1: x, y and z are needed, or none of them",
+            error_of(std::string(kHeader) + "0,0.5,1,7,1,2,3,0.01,nan,0,0\n"));
+}
+
 TEST(RecordingCsv, AColumnThatIsGivenTwiceAndACompressedTableAreRefused) {
   EXPECT_EQ(":1: column 'time_s' is given twice; allowed: once", error_of("time_s,hand_id,time_s\n0,1,2\n"));
   EXPECT_EQ(": is compressed by gzip; allowed: the table that 'gunzip' makes of it",

@@ -14,7 +14,7 @@ namespace mrhi::test {
 /// Makes a folder the working folder during its lifetime.
 class WorkingFolder {
  public:
-  explicit WorkingFolder(const Folder& folder) { std::filesystem::current_path(folder.path()); }
+  explicit WorkingFolder(const std::string& folder) { std::filesystem::current_path(folder); }
   ~WorkingFolder() { std::filesystem::current_path(before_); }
   WorkingFolder(const WorkingFolder&) = delete;
   WorkingFolder& operator=(const WorkingFolder&) = delete;

@@ -146,8 +146,8 @@ TEST_F(MeshScene, RefusesAMissingOrBrokenFile) {
   test::expect_words(error("filename=\"none.stl\""),
                      {"'thing' collision 1", "'none.stl'", "not found", folder_.path()});
   {
-    const test::WorkingFolder here(folder_);
-    test::expect_words(test::scene_error("test.urdf"), {"'none.stl' not found in '.'"});
+    const test::WorkingFolder here(folder_.path());
+    test::expect_words(test::scene_error("test.urdf"), {"'none.stl' not found in '" + folder_.path()});
   }
   folder_.write("broken.stl", "this is not a mesh");
   test::expect_words(error("filename=\"broken.stl\""), {"'thing' collision 1", "'broken.stl'", "read"});
@@ -256,6 +256,10 @@ TEST_F(MeshScene, IsFoundInAFolderAboveThatIsThePackage) {
   ASSERT_EQ(1u, scene.mesh_files.size());
   EXPECT_EQ("package://cups/wedge.obj", scene.mesh_files[0].name);
   EXPECT_EQ(folder_.path() + "/cups/wedge.obj", scene.mesh_files[0].path);
+  {
+    const test::WorkingFolder here(inner);
+    EXPECT_EQ("", test::scene_error("cup.urdf")) << "from its own folder";
+  }
   std::filesystem::rename(folder_.path() + "/cups", folder_.path() + "/cups-main");
   const std::string unpacked = folder_.path() + "/cups-main/urdf/cup.urdf";
   test::expect_words(test::scene_error(unpacked), {"package://cups/wedge.obj", "not found", "ROS path"});

@@ -339,6 +339,16 @@ TEST(Parameters, SetInCodeAreValidatedToo) {
   EXPECT_NO_THROW(validate(configuration));
 }
 
+TEST(Parameters, TruthsAreThoseOfYamlInAnyCase) {
+  Configuration configuration;
+  for (const auto& [word, value] :
+       {std::pair("False", false), std::pair("TRUE", true), std::pair("false", false)}) {
+    set_parameter(configuration, "contact/sleep", word);
+    EXPECT_EQ(value, configuration.contact.sleep) << word;
+  }
+  EXPECT_THROW(set_parameter(configuration, "contact_model", "SEED"), ParameterError);
+}
+
 TEST(Parameters, AreUnchangedByARefusedValue) {
   Configuration configuration;
   for (const std::string& name : parameter_names()) {

@@ -30,6 +30,10 @@ TEST_F(SceneYaml, IsOptionalAndSoIsAllInIt) {
   }
 }
 
+TEST_F(SceneYaml, MayHaveAMapWhoseLinesAreAllCommentedOut) {
+  EXPECT_EQ(1u, load("materials:\n#  thing: {restitution: 0.5}\ntwists:\n").bodies.size());
+}
+
 TEST_F(SceneYaml, SetsWhatItNames) {
   const Scene scene = load(
       "gravity: [0, 0.5, -9.81]\n"

@@ -136,7 +136,7 @@ TEST(UrdfScene, WhatHasNoVisualIsSeenByItsCollisionShapes) {
 }
 
 TEST(UrdfScene, RefusesWhatIsNoUrdf) {
-  test::expect_words(error(""), {"cannot be read"});
+  test::expect_words(error(""), {"this file is empty"});
   test::expect_words(error("<robot name=\"x\"><link name=\"a\"></robot>"), {"bad URDF"});
   test::expect_words(error("gravity: [0, 0, 0]"), {"bad URDF"});
   test::expect_words(error("<robot name=\"x\"><link name=\"a\"/><link name=\"a\"/></robot>"),

@@ -220,7 +220,7 @@ TEST(NamedFile, is_a_path_or_in_the_first_folder_that_has_it) {
 TEST(NamedFile, may_have_any_extension_if_the_file_exists) {
   const test::Folder here, folder;
   const std::string known = folder.write("carry.yaml", "");
-  const test::WorkingFolder working(here);
+  const test::WorkingFolder working(here.path());
   for (const std::string name : {"tap_UP.YAML", "tap.yml", "tap", "carry"}) {
     here.write(name, "");
     EXPECT_EQ(find_named_file("task", name, ".yaml", {folder.path()}), name == "carry" ? known : name);

@@ -278,6 +278,13 @@ TEST_F(SessionTest, refuses_the_folder_of_another_session_and_leaves_it_alone) {
   other.participant = "P02";
   test::expect_words(refusal(other), {path_ + "/session.yaml", "participant", "'P01'", "'P02'"});
   other = header();
+  const std::string whole = text(path_ + "/session.yaml");
+  std::string without = whole;
+  without.erase(without.find("\nseed:"),
+                without.find('\n', without.find("\nseed:") + 1) - without.find("\nseed:"));
+  std::ofstream(path_ + "/session.yaml", std::ios::trunc) << without;
+  test::expect_words(refusal(header()), {"seed: the session in this folder has 'nothing'"});
+  std::ofstream(path_ + "/session.yaml", std::ios::trunc) << whole;
   other.condition = "seed";
   test::expect_words(refusal(other), {"condition", "'implicit'", "'seed'"});
   other = header();
