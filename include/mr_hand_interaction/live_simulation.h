@@ -47,7 +47,8 @@ class LiveSimulation {
   /// operator is out of its restraint's range.
   void restrain(bool on);
   /// Resets everything to its start. Hands are re-acquired. A hand and a free body that overlap then do not
-  /// act on each other until they have separated.
+  /// act on each other until they have separated. Throws std::invalid_argument if bodies would overlap, as
+  /// one that was spawned where another starts.
   void reset();
 
  private:

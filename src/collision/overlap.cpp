@@ -317,7 +317,7 @@ struct StartingBodies {
 
   /// see(a, b, overlap) for pairs that overlap, until it returns false. Returns the work of searches.
   template <class See>
-  double each_overlap(bool in_mechanisms, const See& see) const {
+  double each_overlap(bool in_mechanisms, const See& see, double searches = 1e300) const {
     double work = 0.0;
     for (std::size_t a = 0; a < scene.bodies.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
@@ -325,9 +325,9 @@ struct StartingBodies {
         if ((one.fixed && other.fixed) || (first[a] == first[b]) != in_mechanisms || !are_near(one, other) ||
             are_joined(scene, a, b))
           continue;
-        constexpr double kAtLoading = 2e5;  // searches: not bounded by a step
+        constexpr double kMaxSearches = 2e5;
         SearchBudget budget;
-        budget.left = kAtLoading;
+        budget.left = std::clamp(searches - work, SearchBudget::kMinSample, kMaxSearches);
         const Overlap found = overlap(scene, geometry, states, a, b, budget);
         work += budget.spent;
         if ((found.depth > 0.0 || found.shares_walls) && !see(a, b, found)) return work;
@@ -344,17 +344,18 @@ struct StartingBodies {
 
 }  // namespace
 
-std::string overlaps_at_start(const Scene& scene) {
+std::string overlaps_at_start(const Scene& scene, double searches) {
   constexpr int kMaxNamed = 5;
   std::string all;
   int named = 0;
-  StartingBodies(scene).each_overlap(false, [&](std::size_t a, std::size_t b, const Overlap& found) {
+  const auto name = [&](std::size_t a, std::size_t b, const Overlap& found) {
     if (found.is_allowed()) return true;
     all += (all.empty() ? "'" : ", '") + scene.bodies[a].name + "' is " +
            (found.shares_walls ? "inside thin walls of '" : text::number(found.depth) + " m in '") +
            scene.bodies[b].name + "'";
     return ++named < kMaxNamed;
-  });
+  };
+  StartingBodies(scene).each_overlap(false, name, searches);
   return all;
 }
 

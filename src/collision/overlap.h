@@ -30,8 +30,9 @@ Overlap overlap(const Scene& scene, const SceneGeometry& geometry, const std::ve
                 std::size_t a, std::size_t b, SearchBudget& budget);
 
 /// "'cube' is 0.02 m in 'table'" for the first few pairs whose overlap at the start is not allowed; empty:
-/// none. Fixtures may overlap each other, and so may bodies of one mechanism.
-std::string overlaps_at_start(const Scene& scene);
+/// none. Fixtures may overlap each other, and so may bodies of one mechanism. `searches` of meshes: of all
+/// pairs; beyond them each pair has SearchBudget::kMinSample.
+std::string overlaps_at_start(const Scene& scene, double searches = 1e300);
 
 /// Moves free bodies apart that overlap where they start: their contact would push them apart with an energy
 /// that nobody has given. Bodies on joints stay. Returns by how far each body was moved [m].

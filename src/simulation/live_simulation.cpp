@@ -34,8 +34,8 @@ Pose checked_pose(const std::string& name, const Pose& pose, const Bounds& bound
 }
 
 /// Searches of meshes for one spawn: a few milliseconds, as frames wait meanwhile. Beyond them each pair
-/// still has kMinPairSearches: what they do not find, the contacts push apart.
-constexpr double kSearchesOfSpawn = 3000.0, kMinPairSearches = 30.0;
+/// still has SearchBudget::kMinSample: what they do not find, the contacts push apart.
+constexpr double kSearchesOfSpawn = 3000.0;
 
 /// Throws std::invalid_argument if one of the bodies from `added` on overlaps one of those before.
 void check_free_places(const Simulation& simulation, std::size_t added) {
@@ -49,7 +49,7 @@ void check_free_places(const Simulation& simulation, std::size_t added) {
       const double distance = (states[b].pose.position - states[a].pose.position).norm();
       if (distance > body.bounding_radius + other.bounding_radius || (body.fixed && other.fixed)) continue;
       SearchBudget budget;
-      budget.left = std::max(left, kMinPairSearches);
+      budget.left = std::max(left, SearchBudget::kMinSample);
       const Overlap found = overlap(scene, geometry, states, a, b, budget);
       left -= budget.spent;
       if (found.is_allowed()) continue;
@@ -241,6 +241,10 @@ void LiveSimulation::restrain(bool on) {
 }
 
 void LiveSimulation::reset() {
+  const std::string overlaps = overlaps_at_start(simulation_->scene(), kSearchesOfSpawn);
+  if (!overlaps.empty())
+    throw std::invalid_argument("where they start, " + text::one_line(overlaps, 400) +
+                                "; allowed: places that are free: delete what was spawned there");
   simulation_->reset();
   SimulationState state = simulation_->state();
   const std::vector<Body>& bodies = simulation_->scene().bodies;

@@ -346,6 +346,26 @@ TEST(LiveSimulation, a_placed_body_is_at_rest_there_and_a_reset_brings_all_that_
   EXPECT_FALSE(find_body(held.simulation().scene(), "first"));
 }
 
+TEST(LiveSimulation, a_reset_into_what_was_spawned_there_is_refused_and_changes_nothing) {
+  LiveSimulation live(testing::scene_of(ball_at({0, 0, 0}, "drifts", {0.3, 0, 0})),
+                      testing::unfiltered(ContactModelKind::implicit));
+  for (int i = 0; i < 120; ++i) live.simulation().advance({at(i / kRate), {}});
+  live.add(ball_at({0, 0.01, 0}, "new"));
+  const std::uint64_t before = hash(live.simulation().state());
+  try {
+    live.reset();
+    FAIL() << "two balls would be in each other";
+  } catch (const std::invalid_argument& error) {
+    const std::string said = error.what();
+    EXPECT_NE(said.find("'new' is 0.03 m in 'drifts'; allowed: places that are free"), std::string::npos)
+        << said;
+  }
+  EXPECT_EQ(hash(live.simulation().state()), before);
+  live.remove("new");
+  live.reset();
+  EXPECT_EQ(live.simulation().state().bodies[0].pose.position, Vector3(0, 0, 0));
+}
+
 /// As a recording of a stranger may ask for it.
 TEST(LiveSimulation, a_pose_that_is_none_is_refused) {
   Held held;
