@@ -139,6 +139,7 @@ template <class Kind, class Entry, class Access>
 ParameterEntry named_choice(const std::string& name, const std::vector<const Entry*>& entries,
                             Access access) {
   std::vector<NamedValue<Kind>> kinds;
+  kinds.reserve(entries.size());
   for (const Entry* entry : entries) kinds.push_back({entry->name, {entry->name}});
   return choice(name, kinds, access);
 }
