@@ -34,8 +34,8 @@ Overlap overlap(const Scene& scene, const SceneGeometry& geometry, const std::ve
 /// pairs; beyond them each pair has SearchBudget::kMinSample.
 std::string overlaps_at_start(const Scene& scene, double searches = 1e300);
 
-/// Moves free bodies apart that overlap where they start: their contact would push them apart with an energy
-/// that nobody has given. Bodies on joints stay. Returns by how far each body was moved [m].
+/// Moves free bodies apart that overlap where they start: their contact would push them apart and so add
+/// energy. Bodies on joints stay. Returns by how far each body was moved [m].
 std::vector<double> part_at_start(Scene& scene);
 
 /// Pairs of bodies of one mechanism that no joint connects directly and whose overlap at the start is not

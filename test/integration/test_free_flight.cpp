@@ -246,7 +246,7 @@ TEST(FreeFlight, a_symmetric_body_turns_at_its_constant_rate) {
   EXPECT_LE(state.pose.orientation.angularDistance(expected), 1e-12);
 }
 
-// A knitting needle that tumbles: one step a frame, once with its spin about its length and once without.
+// A knitting needle that tumbles, with and without a spin about its length; one step a frame.
 TEST(FreeFlight, a_slender_rod_turns_at_the_rate_that_it_reports) {
   for (const double along : {0.0, 1.0, 40.0}) {
     Body rod = testing::box_body(Vector3(0.001, 0.001, 0.3), 0.01);

@@ -285,7 +285,7 @@ class TrackersTest(unittest.TestCase):
         motion = Motion(self.folder, 26, 60)
         motion.messages = motion.messages[:3]
         heard, listening = [], []
-        # rospy says so of whoever ended while it connected, as on a busy machine.
+        # A warning of rospy about a node that ended while it connected; occurs on a busy machine.
         of_rospy = "Inbound TCP/IP connection failed"
         log = rospy.Subscriber("/rosout", Log, lambda said: heard.append(said.msg)
                                if said.level >= Log.WARN and of_rospy not in said.msg else None)
