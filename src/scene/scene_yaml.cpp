@@ -253,6 +253,7 @@ void apply_scene_yaml(const std::string& yaml_file, Scene& scene) {
     const auto has = [&](const char* key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); };
     for (const std::string& key : keys) {
       const YamlElement element = root.at(key);
+      if (element.node.IsNull()) continue;  // all its lines are commented out
       if (key == "gravity") scene.gravity = read_vector(element, body_limits::kGravity);
       if (key == "bounds") read_bounds(element, scene.bounds);
       if (key == "materials") read_materials(element, scene);

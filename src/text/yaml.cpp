@@ -168,7 +168,6 @@ void YamlElement::refuse(const std::string& allowed) const {
 }
 
 std::vector<std::string> checked_keys(const YamlElement& map, const std::vector<std::string>& known) {
-  if (map.node.IsNull()) return {};  // all its lines are commented out
   if (!map.node.IsMap()) map.refuse("a map with the keys " + text::joined(known));
   std::vector<std::string> keys;
   std::set<std::string> seen;

@@ -30,8 +30,9 @@ TEST_F(SceneYaml, IsOptionalAndSoIsAllInIt) {
   }
 }
 
-TEST_F(SceneYaml, MayHaveAMapWhoseLinesAreAllCommentedOut) {
+TEST_F(SceneYaml, MayHaveASectionWhoseLinesAreAllCommentedOut) {
   EXPECT_EQ(1u, load("materials:\n#  thing: {restitution: 0.5}\ntwists:\n").bodies.size());
+  test::expect_words(error("materials: {thing: }"), {"materials/thing", "nothing is not allowed"});
 }
 
 TEST_F(SceneYaml, SetsWhatItNames) {
