@@ -313,6 +313,8 @@ class Door:
         number = 0
         while True:
             await asyncio.sleep(FIRST_PERIOD if number < FIRST_PINGS else PERIOD)
+            if viewer.transport.is_closing():
+                viewer.transport.abort()  # it gave no sign of life, and will not read what was left to send
             if len(viewer.pings) > FIRST_PINGS:
                 viewer.pings.clear()
             number += 1
@@ -338,10 +340,10 @@ class Door:
     async def _show(self):
         """Wakes viewers when there is something new, no more often than they are to be shown it."""
         while True:
-            try:
-                await asyncio.wait_for(self._changed.wait(), STARVED)
-            except asyncio.TimeoutError:
-                pass
+            # wait_for() can lose a cancellation that comes with what it waits for, before Python 3.12.
+            starved = asyncio.get_running_loop().call_later(STARVED, self._changed.set)
+            await self._changed.wait()
+            starved.cancel()
             self._changed.clear()
             self._picture.expire()
             for kind in ('scene', 'training'):

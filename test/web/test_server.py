@@ -1,5 +1,6 @@
 """The door of browsers, on this machine's own address: what it refuses, and that hands and frames never wait in line."""
 import asyncio
+import itertools
 import json
 import math
 import os
@@ -52,6 +53,19 @@ def wait_until(holds, what, longest=LONGEST):
         if time.monotonic() > end:
             raise AssertionError('waited %g s for %s' % (longest, what))
         time.sleep(0.01)
+
+
+def silent_viewer(door):
+    """A WebSocket's socket that nobody reads, and the door's viewer for it, of whose words the system keeps few."""
+    idle = socket.create_connection(('127.0.0.1', door.number))
+    idle.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    idle.sendall(('GET /%s/socket HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nOrigin: %s\r\nUpgrade: websocket\r\n'
+                  'Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n'
+                  % (TOKEN, door.number, door.origin)).encode())
+    wait_until(lambda: door.port.counts, 'the viewer')
+    viewer, = door.door._viewers
+    viewer.transport.get_extra_info('socket').setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
+    return idle, viewer
 
 
 class DoorTest(unittest.TestCase):
@@ -335,26 +349,51 @@ class DoorTest(unittest.TestCase):
                     self.assertLess(frames, 60)
         self.run_with(visit)
 
+    async def change(self, door, number):
+        door.picture.take_objects(object_states(50, 0.001 * number))
+        door.picture.take_hands(rendered_hands(4))
+        door.changed()
+        await asyncio.sleep(0.002)
+
     def test_who_does_not_read_is_left_behind_and_costs_nothing(self):
         async def visit(door, session):
-            idle = socket.create_connection(('127.0.0.1', door.number))
-            idle.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-            idle.sendall(('GET /%s/socket HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nOrigin: %s\r\nUpgrade: websocket\r\n'
-                          'Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n'
-                          % (TOKEN, door.number, door.origin)).encode())
-            wait_until(lambda: door.port.counts, 'the viewer')
-            viewer, = door.door._viewers
-            most = 0
-            for k in range(1500):
-                door.picture.take_objects(object_states(50, 0.001 * k))
-                door.picture.take_hands(rendered_hands(4))
-                door.changed()
+            idle, viewer = silent_viewer(door)
+            most = full = 0
+            for number in itertools.count():
+                await self.change(door, number)
                 most = max(most, viewer.transport.get_write_buffer_size())
-                await asyncio.sleep(0.002)
+                full += most > server.UNSENT
+                if full > 200:
+                    break
             self.assertLess(most, 4 * server.UNSENT)
             self.assertLess(len(viewer.texts), 20)
             idle.close()
         self.run_with(visit, rate=120.0)
+
+    def test_who_gives_no_sign_of_life_leaves_its_place(self):
+        async def visit(door, session):
+            idle, viewer = silent_viewer(door)
+            most = 0
+            for number in itertools.count():
+                await self.change(door, number)
+                most = max(most, viewer.transport.get_write_buffer_size())
+                if viewer not in door.door._viewers:
+                    break
+            self.assertGreater(most, server.UNSENT, 'it had not read')
+            idle.close()
+        with mock.patch.object(server, 'PATIENCE', 4.0):
+            self.run_with(visit, rate=120.0)
+
+    def test_it_ends_when_it_is_told_whatever_changes_at_that_moment(self):
+        async def change_and_stop(door, turns):
+            door.changed()
+            for _ in range(turns):
+                await asyncio.sleep(0)
+            await door.stop()
+        for turns in range(8):
+            with RunningDoor(self.folder) as door:
+                stopped = asyncio.run_coroutine_threadsafe(change_and_stop(door.door, turns), door._loop)
+                stopped.result(20)
 
     def test_https_has_a_certificate_of_its_own_that_is_made_once(self):
         import ssl
