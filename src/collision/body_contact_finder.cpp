@@ -69,15 +69,23 @@ struct TimedManifold {
   double time = -1.0;  // of impact [s]; -1: now
 };
 
-/// The rate is n.(v_a - v_b) of the deepest point as a point of both, n from b to a (Eq. 8).
+/// The rate of each gap is n.(v_a - v_b) of its point as one of both, n from b to a (Eq. 8). As turning may
+/// bring another corner down before the nearest one, the pair's rate is that of the gap that closes first, in
+/// proportion to it.
 std::optional<TimedManifold> sweep_pair(const ShapePair& pair, double step, double margin) {
   const auto separation = [&](double time) -> std::optional<Separation<Manifold>> {
     const Manifold manifold = pair.at(time, margin);
     if (manifold.count == 0) return std::nullopt;
-    const ManifoldPoint& nearest = manifold.deepest();
-    const Vector3 relative = pair.a.velocity(time, nearest.point - pair.a.at(time).position) -
-                             pair.b.velocity(time, nearest.point - pair.b.at(time).position);
-    return Separation<Manifold>{manifold, -nearest.depth, manifold.normal.dot(relative)};
+    const Vector3 centre_a = pair.a.at(time).position, centre_b = pair.b.at(time).position;
+    const double gap = -manifold.deepest().depth;
+    double rate = gap;
+    for (const ManifoldPoint& point : manifold) {
+      const Vector3 relative =
+          pair.a.velocity(time, point.point - centre_a) - pair.b.velocity(time, point.point - centre_b);
+      const double closing = manifold.normal_of(point.region).dot(relative);
+      if (point.depth < 0.0) rate = std::min(rate, closing * (gap / -point.depth));
+    }
+    return Separation<Manifold>{manifold, gap, rate};
   };
   const auto touch = first_touch<Manifold>(separation, step);
   if (!touch) return std::nullopt;
@@ -158,9 +166,9 @@ double stiffness_of(double breadth) {
   return std::clamp(breadth / kMinBreadth - 1.0, 0.0, 1.0);
 }
 
-/// For a pair that meets within the step, points and arms are those at the first touch, and the depth is at
-/// most 0 until then. All points have equal fractions of the pair's stiffness. `contact` is that of the last
-/// step if it is `remembered`.
+/// For a pair that meets within the step, points, arms and depths, at most 0, are those at the first touch.
+/// All points have equal fractions of the pair's stiffness. `contact` is that of the last step if it is
+/// `remembered`.
 void make_contact(const BodyContactKey& key, const ShapePair& pair, const TimedManifold& touch,
                   const ManifoldPoint& point, bool remembered, BodyContact& contact) {
   const bool lasting = remembered && contact.depth > 0.0 && point.depth > 0.0;
@@ -305,7 +313,6 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
       const std::size_t first = found_.size();
       std::array<std::uint8_t, 4 * Manifold::kMaxRegions> regions{};  // of the contacts from `first` on
       for (const ManifoldPoint& point : touch->manifold) {
-        if (touch->time >= 0.0 && point.depth < -kMinSeparation) continue;  // meets later
         const BodyContactKey key{static_cast<std::uint16_t>(ia), static_cast<std::uint16_t>(ib),
                                  static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};
         const BodyContact* memory = memory_of(key, before);

@@ -49,21 +49,29 @@ class StepChanges {
   /// does not move ahead of the hand. The springs' response to impacts is delayed with them: a held object
   /// that is hit stays in place.
   void delay_impacts(const std::vector<Body>& scene, const Vector3& gravity, double step,
-                     std::vector<BodyState>& bodies) const;
+                     std::vector<BodyState>& bodies);
 
  private:
   struct Impacted {
     int body;
     Twist before;              // momenta before the impacts
     Quaternion orientation;    // at the start of the step
-    Twist sum, moment;         // of all impulses [N s], [N m s], and of each times its time
+    Twist sum;                 // of all impulses [N s], [N m s]
+    Vector3 moment;            // of each impulse times its time [N s^2]
     double size, size_moment;  // sum of magnitudes, and of each times its time
+  };
+  struct Turn {
+    int body;
+    double time;         // from the start of the step [s]
+    std::size_t number;  // in the order of being noted
+    Vector3 change;      // of the angular momentum [N m s]
   };
   Impacted& impacted(int body, const BodyState& after);
 
   std::vector<char> solved_;
   std::vector<int> places_;  // by body: index in impacted_, or -1
   std::vector<Impacted> impacted_;
+  std::vector<Turn> turns_;
 };
 
 /// Input and output of a contact model in one step. Contacts are found at the poses of its start. respond()

@@ -133,14 +133,21 @@ struct ImpactPoint {
   /// True if both are balls: their normal rotates as they pass each other.
   bool is_of_balls() const { return radius_a > 0.0 && radius_b > 0.0; }
   bool same_pair(const ImpactPoint& other) const {
-    return a.state == other.a.state && b.state == other.b.state;
+    return by_hand == other.by_hand && a.state == other.a.state && b.state == other.b.state;
+  }
+  bool shares_body(const ImpactPoint& other) const {
+    const auto has = [&other](const BodyState* state) {
+      return state != nullptr && (state == other.a.state || state == other.b.state);
+    };
+    return has(a.state) || has(b.state);
   }
 
   /// Time of collision under the present motion, from the start of the step; infinite if never [s].
   double collision_time() const;
   /// Advances to a time under the present motion.
   void advance_to(double later);
-  /// Rotates the bodies' inertia to `time`, as the body rotates until it is hit.
+  /// Rotates the bodies' inertia to `time`, as they rotate until they are hit. Call for all points of a body
+  /// whenever it is hit.
   void turn_inertia();
 
   /// Computes the effective masses and clears the accumulated impulse.

@@ -58,8 +58,7 @@ double radius_of_ball(const Body& body) {
 }
 
 /// Returns the point of a contact between two bodies at the start of the step; n.(c_a' - c_b') < 0
-/// approaches. A contact found by continuous detection has the time of its first touch, when its gap is
-/// closed.
+/// approaches. A contact found by continuous detection has the gap at its pair's first touch.
 ImpactPoint point_of(ContactStep& step, BodyContact& contact) {
   ImpactPoint point;
   point.a = partner(step, contact.key.a, contact.arm_a);
@@ -78,7 +77,6 @@ ImpactPoint point_of(ContactStep& step, BodyContact& contact) {
     point.b.arm.setZero();
     point.advance_to(0.0);
   } else if (contact.first_touch >= 0.0) {
-    point.gap = 0.0;
     point.time = contact.first_touch;
     point.advance_to(0.0);
   }
@@ -216,7 +214,7 @@ void ImpactSolver::collect_in_joints(ContactStep& step, const Island& island,
   for (const IslandContact& link : island.links) {
     BodyContact& contact = step.body_contacts[link.index];
     if (contact.struck) continue;
-    ImpactPoint point = point_in_joints(contact.normal, contact.first_touch >= 0.0 ? 0.0 : -contact.depth);
+    ImpactPoint point = point_in_joints(contact.normal, -contact.depth);
     point.between = &contact, point.total = &contact.impulse, point.struck = &contact.struck;
     add_point(island.number_of(contact.key.b), contact.arm_b, 1.0);
     if (!step.scene.bodies[contact.key.a].fixed)
@@ -258,7 +256,7 @@ bool ImpactSolver::add_in_joints(double step, ImpactPoint point, const Material&
   const double rate = point.rate();
   if (classify(rate) != Approach::colliding) return false;
   point.time = time_to_close(point.gap, rate, 0.0);
-  if (point.between != nullptr && point.between->first_touch >= 0.0) point.time = point.between->first_touch;
+  if (point.between != nullptr) point.time += std::max(0.0, point.between->first_touch);
   if (point.time >= step) return false;
   JointCoordinates& coordinates = coordinates_[points_.size()];
   coordinates.response.resize(velocity_.size(), 3);
@@ -384,15 +382,15 @@ void ImpactSolver::resolve_sequentially(ContactStep& step, const Island& island)
   for (const ImpactPoint& point : points_) widen(point, step.step);
 }
 
-/// Finds the next impact before `end`, and advances all points to it.
+/// Finds the next impact before `end`, and advances all points to it. An impact includes all points that
+/// collide in this step of each pair with a point that collides now. Resolved one after the other they would
+/// tip a box that lands flat.
 bool ImpactSolver::find_next_impact(double end) {
   times_.clear();
   for (const ImpactPoint& point : points_) times_.push_back(point.collision_time());
   const double first = *std::min_element(times_.begin(), times_.end());
   if (first >= end) return false;
   impact_.clear();
-  // An impact includes all points that collide in this step of each pair with a point that collides now.
-  // Resolved one after the other they would tip a box that lands flat.
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto now = [&](std::size_t other) {
       return times_[other] <= first + kTimeTolerance && points_[i].same_pair(points_[other]);
@@ -401,8 +399,11 @@ bool ImpactSolver::find_next_impact(double end) {
     for (std::size_t other = 0; times_[i] < end && other < points_.size(); ++other)
       in_impact = in_impact || now(other);
     if (in_impact) impact_.push_back(&points_[i]);
-    points_[i].advance_to(in_impact ? times_[i] : first);
-    if (in_impact) points_[i].turn_inertia();
+    points_[i].advance_to(first);
+  }
+  for (ImpactPoint& point : points_) {
+    const auto shares_body = [&point](const ImpactPoint* hit) { return hit->shares_body(point); };
+    if (std::any_of(impact_.begin(), impact_.end(), shares_body)) point.turn_inertia();
   }
   return true;
 }

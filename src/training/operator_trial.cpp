@@ -34,10 +34,17 @@ std::string beside(const std::string& urdf_file, const std::vector<std::string>&
 
 void check_goals(const TaskObject& object, const std::vector<Goal>& goals, const Scene& scene) {
   for (const Goal& goal : goals) {
-    if (goal.kind == GoalKind::joint && !find_joint(scene, goal.joint))
+    if (goal.kind != GoalKind::joint) continue;
+    const std::optional<int> index = find_joint(scene, goal.joint);
+    const std::string asks = object.file + ": a goal asks for joint '" + goal.joint + "'";
+    if (!index)
       throw SceneError(
-          object.file + ": a goal asks for joint '" + goal.joint + "', which is not there; allowed: " +
+          asks + ", which is not there; allowed: " +
           (scene.joints.empty() ? "none, as it has no joints" : text::joined(text::names_of(scene.joints))));
+    const Joint& joint = scene.joints[*index];
+    if (goal.above > joint.upper || goal.below < joint.lower)
+      throw SceneError(asks + " beyond its limits; allowed: " + text::number(joint.lower) + " to " +
+                       text::number(joint.upper));
   }
 }
 

@@ -121,6 +121,39 @@ TEST(ImplicitImpact, a_body_that_spins_against_a_finger_that_is_still_never_leav
 // Steel rods that land on an end get a spin about their own axis that is a thousand times easier to change
 // than one across: solved by the inertia of another time, impacts once gave back three times the energy, or
 // 1e6 times.
+// From one corner it swings down on the others, within the step or later, sometimes faster than it fell.
+TEST(ImplicitImpact, a_brick_that_lands_on_a_corner_sinks_in_with_none_of_the_others) {
+  using StepAndDepth = std::pair<double, double>;
+  const Vector3 size(0.08, 0.04, 0.03);
+  for (const auto& [step, depth] : {StepAndDepth{0.001, 5e-4}, {1.0 / 120.0, 3e-3}}) {
+    for (int fall = 0; fall < 400; ++fall) {
+      Body floor = testing::box_body(Vector3(4.0, 4.0, 0.1), 1.0);
+      floor.name = "floor", floor.fixed = true;
+      floor.start.position = Vector3(0, 0, -0.05);
+      Body brick = testing::box_body(size, 2000.0 * size.prod());
+      brick.start.position = Vector3(0, 0, 0.06 + 0.0005 * fall);
+      const Vector3 axis(std::cos(fall), std::sin(fall), 0.0);
+      brick.start.orientation = Quaternion(Eigen::AngleAxisd(0.001 + 0.002 * (fall % 50), axis));
+      brick.material.restitution = 0.4 * (fall % 3);
+      Scene scene;
+      scene.gravity = Vector3(0, 0, -9.81);
+      scene.bodies = {floor, brick};
+      Configuration configuration = testing::unfiltered(ContactModelKind::implicit);
+      configuration.step = 1.001 * step;
+      configuration.gravity = scene.gravity;
+      Simulation simulation(scene, configuration);
+      double deepest = 0.0;
+      for (int i = 0; i * step <= 0.6; ++i) {
+        simulation.advance({testing::at(i * step), {}});
+        const Pose& pose = simulation.state().bodies[1].pose;
+        const Matrix3 turned = pose.orientation.toRotationMatrix();
+        deepest = std::max(deepest, 0.5 * turned.row(2).cwiseAbs().dot(size) - pose.position.z());
+      }
+      EXPECT_LT(deepest, depth) << "steps of " << step << " s, fall " << fall;
+    }
+  }
+}
+
 TEST(ImplicitImpact, a_slender_rod_that_falls_gains_no_energy) {
   using StepAndBreadth = std::pair<double, double>;
   for (const auto& [step, breadth] :

@@ -251,7 +251,9 @@ TEST(ObjectsTouch, a_cube_of_a_millimetre_gains_no_energy_as_it_lands) {
     simulation.advance({at(0.001 * i), {}});
     const BodyState& state = simulation.state().bodies[1];
     const double energy = kinetic_energy(cube, state) + cube.mass * kGravity * state.pose.position.z();
-    EXPECT_LE(energy, 1.01 * least) << i;  // springs give back what they took as it landed
+    // A corner that comes down beside one that rests lets it sink in by 14 um for a moment, of the centre's
+    // 500: that much of the energy comes back.
+    EXPECT_LE(energy, 1.03 * least) << i;
     least = std::min(least, energy);
   }
 }

@@ -166,7 +166,9 @@ double off_place(const HandStrength& hand, double normal_force, double rate, dou
   const double turns = 2.0 * M_PI * kShake;
   const double amplitude =
       share * 2.0 * cube.material.static_friction * normal_force / (cube.mass * turns * turns);
-  Simulation simulation(testing::scene_of(cube), configuration_of(hand, FilterKind::none));
+  Scene scene = testing::scene_of(cube);
+  scene.bounds = {Vector3::Constant(-100.0), Vector3::Constant(100.0)};  // once lost it is not put back
+  Simulation simulation(scene, configuration_of(hand, FilterKind::none));
   Vector3 before = Vector3::Zero();
   for (int frame = 0; frame / rate < kFrom + kFor + 0.5; ++frame) {
     const double t = frame / rate, since = t - kFrom;

@@ -187,6 +187,13 @@ TEST(ObjectModels, are_refused_without_what_the_task_asks_of_them) {
   test::expect_words(error({"wall", "hatch", {}, {}}, {goal}),
                      {"hatch", "'handle'", "allowed: ", "hatch_hinge"});
   test::expect_words(error({"cube", "cube", {}, {}}, {goal}), {"'handle'", "no joints"});
+  goal.joint = "hatch_hinge";
+  goal.above = 1.0;
+  EXPECT_EQ(error({"wall", "hatch", {}, {}}, {goal}), "");
+  goal.above = 7.0;
+  test::expect_words(error({"wall", "hatch", {}, {}}, {goal}), {"'hatch_hinge' beyond its limits", "0 to "});
+  goal.above = -2.0, goal.below = -1.0;
+  test::expect_words(error({"wall", "hatch", {}, {}}, {goal}), {"'hatch_hinge' beyond its limits", "0 to "});
   test::expect_words(error({"hatch", "hatch", {}, {}}, {}), {"not all hangs on a link 'hatch'"});
   test::expect_words(error({"cube", "mixed", {}, {}}, {}), {"mixed", "one link 'cube'"});
   test::expect_words(error({"wall", "hatch", {}, {Vector3::UnitX(), Vector3::Zero()}}, {}),
