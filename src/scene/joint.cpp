@@ -35,13 +35,6 @@ void check_limits(const Joint& joint) {
   check(joint, "restitution", joint.restitution, kRestitution);
 }
 
-/// What acts only at these positions has to be within the limits somewhere.
-void check_reached(const Joint& joint, const std::string& what, double first, double last) {
-  if (first <= joint.upper && last >= joint.lower) return;
-  refuse(joint, what + " beyond its limits",
-         "some within " + text::number(joint.lower) + " to " + text::number(joint.upper));
-}
-
 void check_detents(const Joint& joint) {
   if (!joint.detents) return;
   const std::vector<double>& at = joint.detents->at;
@@ -53,7 +46,6 @@ void check_detents(const Joint& joint) {
       refuse(joint, "detents that do not ascend",
              "each at least " + text::number(kMinDetentDistance) + " further");
   }
-  check_reached(joint, "detents", at.front(), at.back());
   check(joint, "detents' force", joint.detents->force, kForce);
 }
 
@@ -68,8 +60,6 @@ void check_forces(const Joint& joint) {
   check(joint, "latch at", joint.latch->at, kCoordinate);
   check(joint, "latch's force", joint.latch->force, kForce);
   check(joint, "latch's reach", joint.latch->reach, kLatchReach);
-  check_reached(joint, "latch's reach", joint.latch->at - joint.latch->reach,
-                joint.latch->at + joint.latch->reach);
 }
 
 void check_axis(const Joint& joint) {
