@@ -356,12 +356,17 @@ void ImpactSolver::drop_slow(const ContactStep& step) {
   points_.erase(std::remove_if(points_.begin(), points_.end(), is_slow), points_.end());
 }
 
+// Points of a pair collide with the first of them: the gaps of the others, which the impact stops too, stay.
 void ImpactSolver::resolve_simultaneously(ContactStep& step) {
-  impact_.clear();
-  for (ImpactPoint& point : points_) {
-    if (!point.by_hand) point.advance_to(point.collision_time());
-    impact_.push_back(&point);
+  for (auto from = points_.begin(), to = from; from != points_.end(); from = to) {
+    to = std::find_if(from, points_.end(), [from](const ImpactPoint& p) { return !p.same_pair(*from); });
+    if (from->by_hand) continue;
+    double first = step.step;
+    std::for_each(from, to, [&](const ImpactPoint& p) { first = std::min(first, p.collision_time()); });
+    std::for_each(from, to, [&](ImpactPoint& p) { p.advance_to(first); });
   }
+  impact_.clear();
+  for (ImpactPoint& point : points_) impact_.push_back(&point);
   resolve_impact(step);
 }
 
@@ -383,7 +388,7 @@ void ImpactSolver::resolve_sequentially(ContactStep& step, const Island& island)
 }
 
 /// Finds the next impact before `end`, and advances all points to it. An impact includes all points that
-/// collide in this step of each pair with a point that collides now. Resolved one after the other they would
+/// collide in this step of each pair with a point that collides now, at once: one after the other they would
 /// tip a box that lands flat.
 bool ImpactSolver::find_next_impact(double end) {
   times_.clear();
