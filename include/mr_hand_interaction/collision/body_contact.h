@@ -48,7 +48,8 @@ struct BodyContact {
   Material material;                  ///< combined from both bodies
   double depth = 0.0;                 ///< > 0 overlap, < 0 gap [m]
   double share = 1.0;                 ///< of the pair's stiffness; the shares of a pair's points sum to 1
-  double first_touch = -1.0;          ///< of a separated pair, from the start of the step; < 0: none [s]
+  /// Of a separated pair, from the start of the step [s]; point, arms and depth are those then. < 0: none.
+  double first_touch = -1.0;
 
   // Response in this step.
   Vector3 force = Vector3::Zero();    ///< warm start of the next step [N]
