@@ -20,15 +20,15 @@ struct Seen {
       : start(segment.start), across(segment.along.cross(normal)), along(normal.cross(across)) {
     along /= along.squaredNorm();
   }
-  /// Where it crosses an edge, 0..1 on the segment; nothing (2) if it passes it by. It crosses if the signs
-  /// differ, at start - from / rise * edge. An end that is on the line counts as >= 0, so that a ray through
-  /// a corner crosses one of the two edges there, or both or none; but for rounding, as an edge's far end is
-  /// a sum. Signs differ, so that rise is not 0.
-  double crossing(const MeshSurface::Edge& edge) const {
-    const Vector3 to = edge.start - start;
-    const double from = across.dot(to), rise = across.dot(edge.along);
-    if ((from < 0.0) == (from + rise < 0.0)) return 2.0;
-    return along.dot(to) - from / rise * along.dot(edge.along);
+  /// Where it crosses an edge between two of these corners, 0..1 on the segment; nothing (2) if it passes it
+  /// by. It crosses if the signs differ, at start - from / rise * edge. An end that is on the line counts as
+  /// >= 0, and both edges at a corner find the same sign: a ray through a corner crosses one of them, or both
+  /// or none.
+  double crossing(const MeshSurface::Edge& edge, const std::vector<Vector3>& corners) const {
+    const Vector3 &first = corners[edge.corners[0]], &second = corners[edge.corners[1]];
+    const double from = across.dot(first - start), to = across.dot(second - start);
+    if ((from < 0.0) == (to < 0.0)) return 2.0;
+    return along.dot(first - start) - from / (to - from) * along.dot(second - first);
   }
 
   Vector3 start, across, along;
@@ -111,7 +111,7 @@ bool MeshSurface::inside(const Face& face, const Vector3& place) const {
   const Seen ray(Segment(Capsule{place, place + any_normal(face.normal), 0.0}), face.normal);
   bool inside = false;
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const double s = ray.crossing(edges_[sides_[i].edge]);
+    const double s = ray.crossing(edges_[sides_[i].edge], corners_);
     if (s != 2.0 && s > 0.0) inside = !inside;
   }
   return inside;
@@ -135,7 +135,7 @@ Interval MeshSurface::around(const Face& face, const Segment& segment, double s,
   if (segment.along.isZero(0.0)) return stretch;
   const Seen seen(segment, face.normal);
   for (int i = face.first; i < face.first + face.count; ++i) {
-    const double crosses = seen.crossing(edges_[sides_[i].edge]);
+    const double crosses = seen.crossing(edges_[sides_[i].edge], corners_);
     if (crosses <= s) stretch.s0 = std::max(stretch.s0, crosses);
     if (crosses > s) stretch.s1 = std::min(stretch.s1, crosses);
   }
@@ -202,7 +202,7 @@ Pad MeshSurface::pad(const Segment& axis, const ClosestFeatures& deepest) const 
       int next = -1;
       for (int i = face.first; i < face.first + face.count; ++i) {
         const Edge& edge = edges_[sides_[i].edge];
-        const double crosses = line.crossing(edge);
+        const double crosses = line.crossing(edge, corners_);
         if (crosses == 2.0 || side * (crosses - s) <= 0.0 || side * (until - crosses) <= 0.0) continue;
         until = crosses;
         next = edge.is_border() ? -1 : edge.faces[edge.faces[0] == index ? 1 : 0];

@@ -145,6 +145,23 @@ TEST(MeshCollision, balls_in_a_hollow_solid_leave_by_the_nearest_surface) {
   }
 }
 
+/// A ray from there, seen on a notched face, goes through the corner of the notch but for 1e-24 m of
+/// rounding.
+TEST(MeshCollision, of_a_notched_cube_is_as_near_as_its_face_below_its_middle) {
+  constexpr double kHalf = 0.02;
+  const MeshCollider collider(notched_cube(kHalf));
+  for (int i = 0; i < 1000; ++i) {
+    const Vector3 off = 1e-23 * Vector3(std::sin(1.0 * i), std::sin(2.0 * i), 0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      Vector3 place = off;
+      place[axis] = -0.0408949664;
+      const auto found = collider.closest({place, place, 0.0}, 1.0);
+      ASSERT_TRUE(found.has_value());
+      EXPECT_NEAR(found->distance, -place[axis] - kHalf, 1e-12) << i;
+    }
+  }
+}
+
 TEST(MeshCollision, what_is_before_a_corner_that_points_inwards_leaves_by_it) {
   Random random(7);
   const MeshCollider collider(notched_cube(0.03));
