@@ -13,17 +13,16 @@ constexpr double kMinClearance = 1e-5;
 /// Shortest length over a face that can end a pad [m]; shorter ones are rounding beside an edge.
 constexpr double kMinPadLength = 1e-6;
 
-/// A segment seen along a normal n, on the surface under it. With q = along x n across it, an edge's ends are
-/// q.(start - p) and that plus q.edge to one side of it.
+/// A segment seen along a normal n, on the surface under it. With q = along x n across it, a corner c is
+/// q.(c - start) to one side of it.
 struct Seen {
   Seen(const Segment& segment, const Vector3& normal)
       : start(segment.start), across(segment.along.cross(normal)), along(normal.cross(across)) {
     along /= along.squaredNorm();
   }
   /// Where it crosses an edge between two of these corners, 0..1 on the segment; nothing (2) if it passes it
-  /// by. It crosses if the signs differ, at start - from / rise * edge. An end that is on the line counts as
-  /// >= 0, and both edges at a corner find the same sign: a ray through a corner crosses one of them, or both
-  /// or none.
+  /// by. It crosses if the ends' signs differ. An end on the line counts as >= 0, and both edges at a corner
+  /// find the same sign: a ray through a corner crosses one of them, or both or none.
   double crossing(const MeshSurface::Edge& edge, const std::vector<Vector3>& corners) const {
     const Vector3 &first = corners[edge.corners[0]], &second = corners[edge.corners[1]];
     const double from = across.dot(first - start), to = across.dot(second - start);
