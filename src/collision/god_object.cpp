@@ -18,7 +18,8 @@ struct ContactPlane {
 };
 
 /// On the entry face the god object is the plane's point: the nearest features are those of another face.
-ContactPlane contact_plane(const TouchingPair& pair, const ClosestFeatures& features, const Contact* memory) {
+ContactPlane contact_plane(const TouchingPair& pair, const ClosestFeatures& features,
+                           const ContactMemory* memory) {
   if (memory == nullptr || !pair.refinements.entry_face ||
       memory->entry_normal.dot(features.normal) >= kMinSameFaceCosine)
     return {features.point, features.normal, false};
@@ -79,7 +80,7 @@ struct Indentation {
 /// Zilles & Salisbury 1995: the point of the active plane nearest to the finger's point, which is its
 /// projection x + n n.(q - x). A single plane is active, that of the entry face; where faces meet, the
 /// nearest features choose.
-Vector3 god_object(const Indentation& indentation, double s, const Contact* memory) {
+Vector3 god_object(const Indentation& indentation, double s, const ContactMemory* memory) {
   const Vector3 point = memory != nullptr
                             ? Vector3(memory->god_object + (s - memory->axis_parameter) * indentation.along)
                             : Vector3(indentation.pair.in_body.start + s * indentation.along);
@@ -101,7 +102,7 @@ Vector3 lever(const Matrix3& palm, bool at_edge, const Contact& contact) {
 
 /// The lever is zero at the first contact, w = n, and grows as palm and body turn relative to each other. It
 /// is reset by slip.
-void swing_back(const TouchingPair& pair, const Contact* held, Contact& contact) {
+void swing_back(const TouchingPair& pair, const ContactMemory* held, Contact& contact) {
   const Matrix3& palm = pair.hand.palm;
   contact.lever.setZero();
   if (held != nullptr) {
@@ -119,7 +120,7 @@ void swing_back(const TouchingPair& pair, const Contact* held, Contact& contact)
 ///
 /// The patch is Hertz's, a^2 = r d for a ball of radius r pressed in by d (Johnson 1985), whose depth counts
 /// up to r.
-void place(const Indentation& indentation, double s, const Contact* memory, Contact& contact) {
+void place(const Indentation& indentation, double s, const ContactMemory* memory, Contact& contact) {
   const ContactConfiguration& refinements = indentation.pair.refinements;
   contact.depth = indentation.depth(s);
   const bool persists =
@@ -152,9 +153,9 @@ void place(const Indentation& indentation, double s, const Contact* memory, Cont
 /// and takes over a share of its friction along with its load. A hand or a body that is spawned beside the
 /// other, without overlap, touches it from then on.
 void continue_contact(const Indentation& indentation, int point, double s, bool at_edge,
-                      const Contact* memory, Contact& contact) {
+                      const ContactMemory* memory, Contact& contact) {
   const TouchingPair& pair = indentation.pair;
-  static_cast<ContactMemory&>(contact) = memory != nullptr ? ContactMemory(*memory) : ContactMemory();
+  static_cast<ContactMemory&>(contact) = memory != nullptr ? *memory : ContactMemory();
   contact.key = pair.key(point);
   contact.at_edge = at_edge;
   place(indentation, s, memory, contact);

@@ -102,13 +102,13 @@ class Fit {
     return body < scene_.bodies.size() && shape < scene_.bodies[body].shapes.size();
   }
   bool moves(std::size_t body) const { return body < scene_.bodies.size() && !scene_.bodies[body].fixed; }
-  static bool one(const BodyState& body) { return is_unit(body.pose.orientation); }
-  static bool one(const JointState& joint) { return joint.at_limit >= -1 && joint.at_limit <= 1; }
-  static bool one(const HandTrack& track) {
+  bool one(const BodyState& body) const { return is_unit(body.pose.orientation); }
+  bool one(const JointState& joint) const { return joint.at_limit >= -1 && joint.at_limit <= 1; }
+  bool one(const HandTrack& track) const {
     return !track.active ||
            (is_unit(track.previous.palm.orientation) && is_unit(track.current.palm.orientation));
   }
-  static bool one(const HandOffset& offset) { return is_unit(offset.lag.whole) && is_unit(offset.lag.frame); }
+  bool one(const HandOffset& offset) const { return is_unit(offset.lag.whole) && is_unit(offset.lag.frame); }
   bool one(const Contact& contact) const {
     const ContactKey& key = contact.key;
     return is_shape(key.body, key.shape) && key.hand < kMaxHands && key.capsule < kCapsules;
