@@ -286,11 +286,12 @@ def _test(tables, notes, head, factor, wide):
         notes.add(head, head['measure'], 'no value for every %s from %s: left out of the analysis of variance'
                   % (factor, ', '.join(sorted(who))))
     groups = full.index.get_level_values('group')
-    for group, size in groups.value_counts().items():
+    sizes = groups.value_counts().sort_index()  # equal ones come in an order that changes from run to run with pandas 1.1
+    for group, size in sizes.items():
         if size < 2:
             notes.add(head, head['measure'], 'one participant in group %s: left out of the analysis of variance'
                       % group)
-    full = full[groups.map(groups.value_counts()) > 1]
+    full = full[groups.map(sizes) > 1]
     groups = full.index.get_level_values('group')
     if len(full) == 0 or (groups.nunique() < 2 and full.shape[1] < 2):
         notes.add(head, head['measure'], 'no analysis of variance: it needs two participants in a group, and two '

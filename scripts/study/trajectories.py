@@ -28,7 +28,7 @@ def read_path(file):
     table = table[wanted]
     if len(table) < 2:
         raise StudyError('%s: fewer than two positions of the index fingertip (finger 1, bone 3, rendered 0)' % file)
-    table = table[table['hand_id'] == table['hand_id'].value_counts().idxmax()].sort_values('time', kind='mergesort')
+    table = table[table['hand_id'] == table['hand_id'].value_counts().sort_index().idxmax()].sort_values('time', kind='mergesort')
     return _path(table['time'].values, table[['ex', 'ey', 'ez']].values)
 
 
