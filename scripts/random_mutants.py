@@ -24,7 +24,7 @@ SUITES = {
     "rendering": "regression rendering ros",
     "synthetic": "regression synthetic operators",
     "training": "training operators",
-    "ros": "ros wire",
+    "ros": "ros wire nodes:interaction nodes:live_changes nodes:replay",
     "record": "replay ros",
     "replay": "replay regression",
 }

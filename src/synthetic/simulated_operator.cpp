@@ -200,7 +200,6 @@ void SimulatedOperator::replan_fingers(double size) {
   fit_to(size);
   const double reach = keyframes_.back().time, since = last_time_ - began_;
   const double widest = std::max(kMaxApertureFraction * reach, since + kMinDuration);
-  fingers_ = {keyframes_.front(), keyframes_.front(), keyframes_.back()};
   fingers_[0].time = since;
   fingers_[0].posture = now_.posture;
   fingers_[0].rate = rate_;

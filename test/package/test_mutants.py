@@ -24,7 +24,8 @@ def chosen_mutants():
 def suites():
     """Names of the test programs that there are."""
     cmake = text_of("test/CMakeLists.txt")
-    return set(re.findall(r"\w+", " ".join(re.findall(r"foreach\(folder ([^)]*)\)", cmake)))) | {"fuzz", "real_grasps"}
+    nodes = {"nodes:" + name[:-5] for name in os.listdir(os.path.join(PACKAGE, "test/ros")) if name.endswith(".test")}
+    return set(re.findall(r"\w+", " ".join(re.findall(r"foreach\(folder ([^)]*)\)", cmake)))) | {"fuzz", "real_grasps"} | nodes
 
 
 class Chosen(unittest.TestCase):

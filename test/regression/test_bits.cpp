@@ -3,7 +3,6 @@
 
 #include <cinttypes>
 #include <cstdlib>
-#include <cstring>
 #include <map>
 #include <random>
 
@@ -14,6 +13,7 @@
 #include "mr_hand_interaction/simulation_state.h"
 #include "mr_hand_interaction/synthetic/synthetic_hand.h"
 #include "operators/operators_at_work.h"
+#include "parts.h"
 #include "replay/replay_files.h"
 #include "support/fixtures.h"
 #include "support/tessellated.h"
@@ -213,30 +213,43 @@ std::string bits_of(const Pile& pile) {
 
 /// A trial of a simulated operator.
 struct Trial {
-  const char* task;
+  std::string task;
   std::uint64_t seed;
   double noise;
+  const char* group = "veteran";
 
   std::string name() const {
-    return std::string(task) + ",operator " + std::to_string(seed) + ",implicit,0," +
-           std::to_string(noise).substr(0, 3) + ",2";
+    return task + "," + (group == std::string("veteran") ? "operator " : "beginner ") + std::to_string(seed) +
+           ",implicit,0," + std::to_string(noise).substr(0, 3) + ",2";
   }
 };
-constexpr Trial kTrials[] = {{"cube", 5, 1.0}, {"rail", 1, 0.0}, {"throw", 2, 1.0}};
+
+std::vector<Trial> trials() {
+  std::vector<Trial> all{{"cube", 5, 1.0}, {"rail", 1, 0.0}, {"throw", 2, 1.0}};
+  for (const char* task :
+       {"long_cuboid", "catch", "dock", "hatch", "hatch_0g", "nudge_into_box", "slap", "tap"}) {
+    all.push_back({task, 3, 1.0});
+    all.push_back({task, 4, 1.0, "beginner"});
+  }
+  return all;
+}
 
 std::string bits_of(const Trial& trial) {
-  const Task task = trial.task == std::string("cube")
-                        ? testing::task_with("cube")
-                        : load_task("config/tasks/" + std::string(trial.task) + ".yaml");
+  const std::string file = "config/tasks/" + trial.task + ".yaml";
+  const Task task = std::filesystem::exists(file) ? load_task(file) : testing::task_with(trial.task);
   const TrialMeasures measures =
-      testing::play(task, draw_skill("veteran", trial.seed), trial.seed, trial.noise).measures;
-  const double number = measures.arrival_speed.value_or(measures.path_length);
-  std::uint64_t time = 0, last = 0;
-  std::memcpy(&time, &measures.completion_time, sizeof time);
-  std::memcpy(&last, &number, sizeof last);
-  char text[64];
-  std::snprintf(text, sizeof text, "%016" PRIx64 ",%016" PRIx64, time, last);
-  return text;
+      testing::play(task, draw_skill(trial.group, trial.seed), trial.seed, trial.noise).measures;
+  Digest time, others;
+  time.add(measures.completion_time);
+  for (const int count : {measures.attempts, measures.drops, measures.touches}) others.add(count);
+  for (const std::optional<double>& stage : measures.stage_times) others.add(stage.value_or(-1.0));
+  others.add(measures.path_length);
+  for (const std::optional<double>& measure :
+       {measures.grip_force_mean, measures.grip_force_max, measures.release_drift, measures.release_speed,
+        measures.arrival_speed, measures.misplacement, measures.misalignment, measures.operator_speed,
+        measures.operator_spin})
+    others.add(measure.value_or(-1.0));
+  return time.text() + "," + others.text();
 }
 
 /// A scene as it is loaded, saved and loaded again.
@@ -295,8 +308,11 @@ TEST(Bits, of_replays_piles_trials_and_scenes_are_those_that_were_reviewed) {
   };
   for (const NoisyReplay& run : runs()) compare(run);
   for (const Pile& pile : kPiles) compare(pile);
-  for (const Trial& trial : kTrials) compare(trial);
+  for (const Trial& trial : trials()) compare(trial);
   for (const LoadedScene& scene : loaded_scenes()) compare(scene);
+  for (std::size_t kind = 0; kind < kTouchingKinds; ++kind) compare(Touching{kind});
+  for (const RandomScene& run : kRandomScenes) compare(run);
+  for (std::size_t kind = 0; kind < kTouchingKinds; ++kind) compare(Grasping{kind});
   if (write) std::ofstream(kTable) << table;
   EXPECT_TRUE(write || count == 0)
       << count << " of " << all << " runs have other bits than " << kTable << ":" << changed
