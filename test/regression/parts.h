@@ -42,35 +42,37 @@ class Digest {
 struct Touching {
   std::size_t kind;
   std::string name() const {
-    static const char* const kNames[] = {"box",           "ball",          "cylinder",
-                                         "capsule",       "mesh of a box", "mesh of a ball",
-                                         "mesh of a can", "mesh of a ring"};
+    static const char* const kNames[] = {"box",           "ball",           "cylinder",
+                                         "capsule",       "mesh of a box",  "mesh of a ball",
+                                         "mesh of a can", "mesh of a ring", "disc"};
     return std::string("touching,") + kNames[kind] + ",,,,";
   }
 };
-constexpr std::size_t kTouchingKinds = 8;
+constexpr std::size_t kTouchingKinds = 9;
 
-inline Shape touching_shape(std::size_t kind) {
+inline Shape touching_shape(std::size_t kind, double scale = 1.0) {
   const auto mesh = [](TriangleMesh triangles) {
     return Mesh{std::make_shared<const TriangleMesh>(std::move(triangles)), "", Vector3::Ones()};
   };
   switch (kind) {
     case 0:
-      return Box{Vector3(0.03, 0.02, 0.012)};
+      return Box{scale * Vector3(0.03, 0.02, 0.012)};
     case 1:
-      return Sphere{0.018};
+      return Sphere{scale * 0.018};
     case 2:
-      return Cylinder{0.016, 0.025};
+      return Cylinder{scale * 0.016, scale * 0.025};
     case 3:
-      return Pill{0.012, 0.02};
+      return Pill{scale * 0.012, scale * 0.02};
     case 4:
-      return mesh(testing::tessellated_box(Vector3(0.025, 0.018, 0.014), 2));
+      return mesh(testing::tessellated_box(scale * Vector3(0.025, 0.018, 0.014), 2));
     case 5:
-      return mesh(testing::tessellated_ball(0.02, 5));
+      return mesh(testing::tessellated_ball(scale * 0.02, 5));
     case 6:
-      return mesh(testing::tessellated_can(0.015, 0.02, 12, 2, 2));
+      return mesh(testing::tessellated_can(scale * 0.015, scale * 0.02, 12, 2, 2));
+    case 7:
+      return mesh(testing::tessellated_ring(scale * 0.025, scale * 0.01, 8));
     default:
-      return mesh(testing::tessellated_ring(0.025, 0.01, 8));
+      return Cylinder{scale * 0.025, scale * 0.008};
   }
 }
 
@@ -158,11 +160,14 @@ inline std::string bits_of(const RandomScene& run) {
 /// The motion that grasps an object.
 struct Grasping {
   std::size_t kind;
-  std::string name() const { return "grasp_object," + std::to_string(kind) + ",,,,"; }
+  double scale;
+  std::string name() const {
+    return "grasp_object," + std::to_string(kind) + " x " + std::to_string(scale).substr(0, 3) + ",,,,";
+  }
 };
 
 inline std::string bits_of(const Grasping& grasping) {
-  Body body = testing::placed_body("object", touching_shape(grasping.kind),
+  Body body = testing::placed_body("object", touching_shape(grasping.kind, grasping.scale),
                                    {{0.02, 0.01, 0.2}, Quaternion(0.9, 0.3, 0.2, 0.1).normalized()}, false);
   const ScriptedMotion motion = grasp_object(testing::scene_of(body));
   Digest times, joints;

@@ -231,6 +231,8 @@ std::vector<Trial> trials() {
     all.push_back({task, 3, 1.0});
     all.push_back({task, 4, 1.0, "beginner"});
   }
+  for (const char* afloat : {"rail", "throw", "dock", "hatch_0g"})
+    for (const std::uint64_t seed : {6, 7}) all.push_back({afloat, seed, 1.0});
   return all;
 }
 
@@ -312,7 +314,8 @@ TEST(Bits, of_replays_piles_trials_and_scenes_are_those_that_were_reviewed) {
   for (const LoadedScene& scene : loaded_scenes()) compare(scene);
   for (std::size_t kind = 0; kind < kTouchingKinds; ++kind) compare(Touching{kind});
   for (const RandomScene& run : kRandomScenes) compare(run);
-  for (std::size_t kind = 0; kind < kTouchingKinds; ++kind) compare(Grasping{kind});
+  for (std::size_t kind = 0; kind < kTouchingKinds; ++kind)
+    for (const double scale : {1.0, 1.8}) compare(Grasping{kind, scale});
   if (write) std::ofstream(kTable) << table;
   EXPECT_TRUE(write || count == 0)
       << count << " of " << all << " runs have other bits than " << kTable << ":" << changed
