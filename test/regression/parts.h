@@ -37,20 +37,9 @@ class Digest {
   std::uint64_t value_ = 0xcbf29ce484222325u;
 };
 
-/// Shapes of every kind that touch, overlap or nearly do, at random: the manifolds of one kind with each, and
-/// its closest features to a capsule.
-struct Touching {
-  std::size_t kind;
-  std::string name() const {
-    static const char* const kNames[] = {"box",           "ball",           "cylinder",
-                                         "capsule",       "mesh of a box",  "mesh of a ball",
-                                         "mesh of a can", "mesh of a ring", "disc"};
-    return std::string("touching,") + kNames[kind] + ",,,,";
-  }
-};
-constexpr std::size_t kTouchingKinds = 9;
+constexpr std::size_t kKinds = 9;
 
-inline Shape touching_shape(std::size_t kind, double scale = 1.0) {
+inline Shape shape_of_kind(std::size_t kind, double scale = 1.0) {
   const auto mesh = [](TriangleMesh triangles) {
     return Mesh{std::make_shared<const TriangleMesh>(std::move(triangles)), "", Vector3::Ones()};
   };
@@ -76,6 +65,18 @@ inline Shape touching_shape(std::size_t kind, double scale = 1.0) {
   }
 }
 
+/// Shapes of every kind that touch, overlap or nearly do, at random: the manifolds of one kind with each, and
+/// its closest features to a capsule.
+struct Touching {
+  std::size_t kind;
+  std::string name() const {
+    static const char* const kNames[] = {"box",           "ball",           "cylinder",
+                                         "capsule",       "mesh of a box",  "mesh of a ball",
+                                         "mesh of a can", "mesh of a ring", "disc"};
+    return std::string("touching,") + kNames[kind] + ",,,,";
+  }
+};
+
 inline std::string bits_of(const Touching& touching) {
   constexpr int kPairs = 150;
   constexpr double kMargin = 0.003, kFarthest = 0.035;
@@ -93,11 +94,11 @@ inline std::string bits_of(const Touching& touching) {
     const Vector3 axis = random.gaussian_vector(1.0);
     return Quaternion(random.gaussian(), axis.x(), axis.y(), axis.z()).normalized();
   };
-  const Shape a = touching_shape(touching.kind);
+  const Shape a = shape_of_kind(touching.kind);
   const auto collider_a = collider_of(a);
   const ManifoldShape of_a(a, collider_a.get());
-  for (std::size_t kind = 0; kind < kTouchingKinds; ++kind) {
-    const Shape b = touching_shape(kind);
+  for (std::size_t kind = 0; kind < kKinds; ++kind) {
+    const Shape b = shape_of_kind(kind);
     const auto collider_b = collider_of(b);
     const ManifoldShape of_b(b, collider_b.get());
     for (int i = 0; i < kPairs; ++i) {
@@ -167,7 +168,7 @@ struct Grasping {
 };
 
 inline std::string bits_of(const Grasping& grasping) {
-  Body body = testing::placed_body("object", touching_shape(grasping.kind, grasping.scale),
+  Body body = testing::placed_body("object", shape_of_kind(grasping.kind, grasping.scale),
                                    {{0.02, 0.01, 0.2}, Quaternion(0.9, 0.3, 0.2, 0.1).normalized()}, false);
   const ScriptedMotion motion = grasp_object(testing::scene_of(body));
   Digest times, joints;

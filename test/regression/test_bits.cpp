@@ -16,7 +16,6 @@
 #include "parts.h"
 #include "replay/replay_files.h"
 #include "support/fixtures.h"
-#include "support/tessellated.h"
 
 namespace mrhi {
 namespace {
@@ -145,25 +144,10 @@ struct Pile {
 };
 constexpr Pile kPiles[] = {{-9.81, 0.3, 1000}, {-9.81, 0.3, 120}, {0.0, 1.0, 1000}, {0.0, 0.5, 60}};
 
-std::vector<PlacedShape> shapes_of_kind(int kind) {
-  const auto mesh = [](TriangleMesh triangles) {
-    return Mesh{std::make_shared<const TriangleMesh>(std::move(triangles)), "", Vector3::Ones()};
-  };
-  switch (kind) {
-    case 0:
-      return {{Box{Vector3(0.03, 0.02, 0.012)}, {}}};
-    case 1:
-      return {{Sphere{0.018}, {}}};
-    case 2:
-      return {{Cylinder{0.016, 0.025}, {}}};
-    case 3:
-      return {{Pill{0.012, 0.02}, {}}};
-    case 4:
-      return {{mesh(testing::tessellated_box(Vector3(0.025, 0.018, 0.014), 2)), {}}};
-    default:
-      return {{Box{Vector3(0.03, 0.01, 0.01)}, {}},
-              {Cylinder{0.01, 0.02}, {{0.02, 0.0, 0.02}, Quaternion::Identity()}}};
-  }
+std::vector<PlacedShape> shapes_of_kind(std::size_t kind) {
+  if (kind < 5) return {{shape_of_kind(kind), {}}};
+  return {{Box{Vector3(0.03, 0.01, 0.01)}, {}},
+          {Cylinder{0.01, 0.02}, {{0.02, 0.0, 0.02}, Quaternion::Identity()}}};
 }
 
 Scene scene_of(const Pile& pile) {
@@ -181,7 +165,7 @@ Scene scene_of(const Pile& pile) {
     body.mass = 0.02 + 0.01 * (i % 4);
     body.inertia = body.mass * 0.0003 * Vector3(0.6, 0.8, 1.0).asDiagonal();
     body.material.restitution = pile.restitution;
-    body.shapes = shapes_of_kind(i % 6);
+    body.shapes = shapes_of_kind(static_cast<std::size_t>(i % 6));
     body.start.position = Vector3(0.1 * (i % 3 - 1), 0.05 + 0.1 * (i / 3 % 3 - 1), 0.2 + 0.1 * (i / 9));
     body.start.orientation = Quaternion(1.0 + next(), next(), next(), next()).normalized();
     body.start_twist.linear = 3.0 * (Vector3(0, 0.05, 0.25) - body.start.position);
@@ -312,9 +296,9 @@ TEST(Bits, of_replays_piles_trials_and_scenes_are_those_that_were_reviewed) {
   for (const Pile& pile : kPiles) compare(pile);
   for (const Trial& trial : trials()) compare(trial);
   for (const LoadedScene& scene : loaded_scenes()) compare(scene);
-  for (std::size_t kind = 0; kind < kTouchingKinds; ++kind) compare(Touching{kind});
+  for (std::size_t kind = 0; kind < kKinds; ++kind) compare(Touching{kind});
   for (const RandomScene& run : kRandomScenes) compare(run);
-  for (std::size_t kind = 0; kind < kTouchingKinds; ++kind)
+  for (std::size_t kind = 0; kind < kKinds; ++kind)
     for (const double scale : {1.0, 1.8}) compare(Grasping{kind, scale});
   if (write) std::ofstream(kTable) << table;
   EXPECT_TRUE(write || count == 0)
