@@ -132,17 +132,21 @@ std::string bits_of(const NoisyReplay& run) {
   return text;
 }
 
-/// Three bodies of every kind of shape, thrown at each other over a table: each kind meets each.
+/// Bodies of every kind of shape, thrown at each other over a table: each kind meets each. Many become one
+/// large island.
 struct Pile {
   double gravity, restitution;
   int rate;  // of steps [1/s]
+  int bodies = 18;
 
   std::string name() const {
-    return "pile,restitution " + std::to_string(restitution).substr(0, 3) + ",implicit," +
-           (gravity == 0.0 ? "0" : "-9.81") + "," + std::to_string(rate) + ",1";
+    return (bodies == 18 ? "pile,restitution " : "pile of " + std::to_string(bodies) + ",restitution ") +
+           std::to_string(restitution).substr(0, 3) + ",implicit," + (gravity == 0.0 ? "0" : "-9.81") + "," +
+           std::to_string(rate) + ",1";
   }
 };
-constexpr Pile kPiles[] = {{-9.81, 0.3, 1000}, {-9.81, 0.3, 120}, {0.0, 1.0, 1000}, {0.0, 0.5, 60}};
+constexpr Pile kPiles[] = {{-9.81, 0.3, 1000}, {-9.81, 0.3, 120},      {0.0, 1.0, 1000},
+                           {0.0, 0.5, 60},     {-9.81, 0.0, 1000, 54}, {-9.81, 0.3, 120, 54}};
 
 std::vector<PlacedShape> shapes_of_kind(std::size_t kind) {
   if (kind < 5) return {{shape_of_kind(kind), {}}};
@@ -159,7 +163,7 @@ Scene scene_of(const Pile& pile) {
   scene.gravity = Vector3(0, 0, pile.gravity);
   std::mt19937 random(7);
   const auto next = [&random] { return 2.0 * random() / 4294967296.0 - 1.0; };
-  for (int i = 0; i < 18; ++i) {
+  for (int i = 0; i < pile.bodies; ++i) {
     Body body;
     body.name = "body" + std::to_string(i);
     body.mass = 0.02 + 0.01 * (i % 4);
