@@ -28,9 +28,7 @@ Pose checked_pose(const std::string& name, const Pose& pose, const Bounds& bound
   if (!(std::abs(size - 1.0) < 0.01))
     throw std::invalid_argument("'" + name + "': orientation " + text::quaternion(pose.orientation) +
                                 " is not allowed; allowed: a unit quaternion [x, y, z, w]");
-  Pose checked = pose;
-  if (size != 1.0) checked.orientation.normalize();
-  return checked;
+  return {pose.position, pose.orientation.normalized()};
 }
 
 /// Searches of meshes for one spawn: a few milliseconds, as frames wait meanwhile. Beyond them each pair

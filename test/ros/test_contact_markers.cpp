@@ -25,6 +25,7 @@ TEST(ContactMarkers, arrows_push_as_the_force_does_behind_the_finger_and_are_lon
     shown.update();
     const Ends arrow(shown.first("forces"));
     EXPECT_GT(arrow.tip, contact.point.z() + 2.0 * contact.radius);
+    EXPECT_LT(arrow.tip, contact.point.z() + 2.0 * contact.radius + 0.01);  // not far from the finger
     EXPECT_GT(arrow.length(), before);
     EXPECT_LT(arrow.length(), 0.12);
     before = arrow.length();

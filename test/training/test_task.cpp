@@ -92,6 +92,8 @@ TEST_F(TaskFile, refuses_wrong_types_and_what_is_out_of_range) {
   test::expect_words(error(kHead + kGoals + "time_out: 0\n"), {"time_out", "a number above 0"});
   test::expect_words(error(kHead + kGoals + "practice: often\n"), {"practice", "often", "true"});
   test::expect_words(error(kHead + kGoals + "repetitions: 1.5\n"), {"repetitions", "1.5", "whole number"});
+  test::expect_words(error(kHead + kGoals + "repetitions: 1001\n"), {"1001", "1 to 1000"});
+  EXPECT_EQ(error(kHead + kGoals + "repetitions: 1000\n"), "");
   test::expect_words(error(kHead + kGoals + "gravity: 9.81\n"), {"gravity", "9.81", "three numbers"});
   test::expect_words(error(kHead + kGoals + "order: random\n"),
                      {"order", "random", "latin_square or as_listed"});

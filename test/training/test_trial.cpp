@@ -26,6 +26,8 @@ TEST(Trial, goes_from_picking_up_over_the_places_to_the_release) {
   EXPECT_EQ(TrialResult::none, feeder.trial.result()) << "its drift is still to be seen";
   feeder.stay(2.0);
   EXPECT_EQ(TrialResult::completed, feeder.trial.result());
+  EXPECT_EQ(0.0, feeder.trial.remaining());
+  EXPECT_EQ(1.0, feeder.trial.progress());
 
   const TrialMeasures& measures = feeder.trial.measures();
   EXPECT_NEAR(1.0 + 0.03 + 3.01 + 3.01 + 0.01, measures.completion_time, 2 * kFrame);
