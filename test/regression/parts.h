@@ -2,11 +2,11 @@
 
 #include <cinttypes>
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <vector>
 
 #include "collision/body_manifold.h"
+#include "math/fnv1a.h"
 #include "mr_hand_interaction/simulation.h"
 #include "mr_hand_interaction/synthetic/random.h"
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
@@ -16,25 +16,19 @@
 
 namespace mrhi {
 
-/// Hash of the bits of numbers, FNV-1a.
+/// Hash of the bits of numbers.
 class Digest {
  public:
-  void add(double number) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &number, sizeof bits);
-    for (int byte = 0; byte < 8; ++byte) value_ = (value_ ^ (bits >> 8 * byte & 0xff)) * 0x100000001b3u;
-  }
-  void add(const Vector3& vector) {
-    for (int i = 0; i < 3; ++i) add(vector[i]);
-  }
+  void add(double number) { hash_.add(&number, sizeof number); }
+  void add(const Vector3& vector) { hash_.add(vector.data(), sizeof vector); }
   std::string text() const {
     char text[20];
-    std::snprintf(text, sizeof text, "%016" PRIx64, value_);
+    std::snprintf(text, sizeof text, "%016" PRIx64, hash_.value);
     return text;
   }
 
  private:
-  std::uint64_t value_ = 0xcbf29ce484222325u;
+  Fnv1a hash_ = {};
 };
 
 constexpr std::size_t kKinds = 9;

@@ -275,7 +275,7 @@ std::string bits_of(const LoadedScene& loaded) {
   return text;
 }
 
-TEST(Bits, of_replays_piles_trials_and_scenes_are_those_that_were_reviewed) {
+TEST(Bits, are_those_that_were_reviewed) {
   std::map<std::string, std::string> reviewed;
   const std::vector<std::string> lines = test::lines_of(kTable);
   const bool write = std::getenv("MR_HAND_WRITE_BITS") != nullptr;
