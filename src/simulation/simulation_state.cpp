@@ -83,7 +83,7 @@ class Fit {
  private:
   template <class Items>
   bool all(const Items& items) const {
-    return std::all_of(items.begin(), items.end(), [this](const auto& item) { return one(item); });
+    return std::all_of(items.begin(), items.end(), [this](const auto& item) { return this->one(item); });
   }
   template <class Contacts>
   static bool sorted(const Contacts& contacts) {
