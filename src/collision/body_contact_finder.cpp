@@ -167,11 +167,12 @@ double stiffness_of(double breadth) {
 }
 
 /// For a pair that meets within the step, points, arms and depths, at most 0, are those at the first touch.
-/// All points have equal fractions of the pair's stiffness. `contact` is that of the last step if it is
-/// `remembered`.
+/// All points have equal fractions of the pair's stiffness. `memory`: of the last step; null if the surfaces
+/// did not touch.
 void make_contact(const BodyContactKey& key, const ShapePair& pair, const TimedManifold& touch,
-                  const ManifoldPoint& point, bool remembered, BodyContact& contact) {
-  const bool lasting = remembered && contact.depth > 0.0 && point.depth > 0.0;
+                  const ManifoldPoint& point, const BodyContactMemory* memory, BodyContact& contact) {
+  if (memory != nullptr) static_cast<BodyContactMemory&>(contact) = *memory;
+  const bool lasting = contact.depth > 0.0 && point.depth > 0.0;
   contact.key = key;
   contact.point = point.point;
   contact.normal = touch.manifold.normal_of(point.region);
@@ -208,7 +209,7 @@ void sort_points(Manifold& manifold) {
 BodyContactFinder::BodyContactFinder(const Scene& scene, const SceneGeometry& geometry,
                                      const Vector3& gravity)
     : scene_(scene), geometry_(geometry), gravity_(gravity) {
-  found_.reserve(16 * scene.bodies.size());
+  before_.reserve(16 * scene.bodies.size());
 }
 
 /// World-aligned boxes with a margin for the step are tested before shapes. simulation/sleeping.cpp keeps the
@@ -216,7 +217,8 @@ BodyContactFinder::BodyContactFinder(const Scene& scene, const SceneGeometry& ge
 void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
                              const std::vector<char>& asleep, double step, double driven,
                              std::vector<BodyContact>& contacts) {
-  found_.clear();
+  before_.assign(contacts.begin(), contacts.end());
+  contacts.clear();
   work_ = 0.0;
   followed_ = followed_gap(neighbours, bodies, asleep, step, driven);
   memory_index_ = 0;
@@ -236,7 +238,6 @@ void BodyContactFinder::find(const Neighbours& neighbours, const std::vector<Bod
     if (!of_b.moving) of_b.moving.emplace(scene_.bodies[ib], bodies[ib], gravity_);
     find_pair(ia, ib, step, contacts);
   }
-  contacts.swap(found_);
 }
 
 /// Largest displacement by an impact within the step. Where nothing moves it is almost 0: the bricks of a
@@ -280,16 +281,16 @@ BodyContactFinder::StepBox BodyContactFinder::step_box(std::size_t index, const 
   return reach;
 }
 
-/// The contact of the previous step, if there was one. Keys must be queried in order.
-const BodyContact* BodyContactFinder::memory_of(const BodyContactKey& key,
-                                                const std::vector<BodyContact>& before) {
-  while (memory_index_ < before.size() && before[memory_index_].key < key) ++memory_index_;
-  return memory_index_ < before.size() && before[memory_index_].key == key ? &before[memory_index_] : nullptr;
+/// Of the contact in the last step, if there was one. Keys must be queried in order.
+const BodyContactMemory* BodyContactFinder::memory_of(const BodyContactKey& key) {
+  while (memory_index_ < before_.size() && before_[memory_index_].key < key) ++memory_index_;
+  return memory_index_ < before_.size() && before_[memory_index_].key == key ? &before_[memory_index_]
+                                                                             : nullptr;
 }
 
 /// The margin is the distance that the two can close in the step; pairs farther apart have no manifold.
 void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
-                                  const std::vector<BodyContact>& before) {
+                                  std::vector<BodyContact>& contacts) {
   const double travel = step_boxes_[ia]->travel + step_boxes_[ib]->travel;
   const MovingBody &a = *step_boxes_[ia]->moving, &b = *step_boxes_[ib]->moving;
   const double turned = fastest_point(a) * step, margin = travel + turned + fastest_point(b) * step;
@@ -310,29 +311,23 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
       work_ += budget.spent;
       if (!touch) continue;
       sort_points(touch->manifold);
-      const std::size_t first = found_.size();
+      const std::size_t first = contacts.size();
       std::array<std::uint8_t, 4 * Manifold::kMaxRegions> regions{};  // of the contacts from `first` on
       for (const ManifoldPoint& point : touch->manifold) {
         const BodyContactKey key{static_cast<std::uint16_t>(ia), static_cast<std::uint16_t>(ib),
                                  static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};
-        const BodyContact* memory = memory_of(key, before);
-        if (memory != nullptr) {
-          found_.push_back(*memory);
-        } else {
-          found_.emplace_back();
-        }
-        make_contact(key, pair, *touch, point, memory != nullptr, found_.back());
-        regions[found_.size() - 1 - first] = point.region;
+        regions[contacts.size() - first] = point.region;
+        make_contact(key, pair, *touch, point, memory_of(key), contacts.emplace_back());
       }
       for (int region = 0; region < Manifold::kMaxRegions; ++region) {
         std::array<BodyContact*, 4> together{};
         int count = 0;
-        for (std::size_t k = first; k < found_.size(); ++k)
-          if (regions[k - first] == region) together[count++] = &found_[k];
+        for (std::size_t k = first; k < contacts.size(); ++k)
+          if (regions[k - first] == region) together[count++] = &contacts[k];
         if (count == 0) break;  // regions are numbered from 0
         place_friction(pair, together, count);
       }
-      for (std::size_t k = first; k < found_.size(); ++k) anchor(a, b, found_[k]);
+      for (std::size_t k = first; k < contacts.size(); ++k) anchor(a, b, contacts[k]);
     }
   }
 }

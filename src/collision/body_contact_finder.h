@@ -34,8 +34,8 @@ class BodyContactFinder {
   double followed_gap(const Neighbours& neighbours, const std::vector<BodyState>& bodies,
                       const std::vector<char>& asleep, double step, double driven) const;
   StepBox step_box(std::size_t index, const BodyState& state, double step) const;
-  const BodyContact* memory_of(const BodyContactKey& key, const std::vector<BodyContact>& before);
-  void find_pair(std::size_t a, std::size_t b, double step, const std::vector<BodyContact>& before);
+  const BodyContactMemory* memory_of(const BodyContactKey& key);
+  void find_pair(std::size_t a, std::size_t b, double step, std::vector<BodyContact>& contacts);
 
   const Scene& scene_;
   const SceneGeometry& geometry_;
@@ -44,8 +44,8 @@ class BodyContactFinder {
   double followed_ = 0.0;                           // gap from which contacts are followed in this step [m]
   std::vector<std::optional<StepBox>> step_boxes_;  // by body, of those with an awake neighbour
   std::vector<Vector3> centres_;                    // of the shapes of a pair's second body, in world [m]
-  std::vector<BodyContact> found_;
-  std::size_t memory_index_ = 0;  // of the contacts before
+  std::vector<BodyContactMemory> before_;           // of the last step's contacts
+  std::size_t memory_index_ = 0;                    // in it
 };
 
 }  // namespace mrhi

@@ -48,6 +48,7 @@ struct BroadPhase::Impl {
   struct Body {
     std::shared_ptr<FclSphere> sphere = std::make_shared<FclSphere>(0.0);
     FclObject object{sphere};
+    Vector3 centre = Vector3::Zero();
     bool registered = false, moved = false;
   };
 
@@ -72,6 +73,9 @@ struct BroadPhase::Impl {
   }
   static bool add_pair(FclObject* a, FclObject* b, void* data) {
     Impl& self = *static_cast<Impl*>(data);
+    const Body &x = self.body_of(a), &y = self.body_of(b);
+    const double reach = x.sphere->radius + y.sphere->radius;
+    if ((x.centre - y.centre).squaredNorm() > reach * reach) return false;
     const int i = self.index_of(a), j = self.index_of(b);
     self.found_pairs.emplace_back(std::min(i, j), std::max(i, j));
     return false;
@@ -95,6 +99,7 @@ BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
 void BroadPhase::update(int index, const Vector3& centre, double radius) {
   Impl::Body& body = impl_->bodies.at(index);
   body.sphere->radius = radius;
+  body.centre = centre;
   place(body.object, *body.sphere, centre);
   if (!body.registered) {
     body.object.setUserData(&body);

@@ -205,9 +205,6 @@ void Neighbours::list_near_hands(const std::vector<BodyState>& bodies) {
 void Neighbours::list_pairs() {
   pairs_.clear();
   for (std::pair<int, int> pair : broad_phase_.pairs()) {
-    const PaddedSphere &first = padded_[pair.first], &second = padded_[pair.second];
-    const double reach = first.radius + second.radius;
-    if ((first.centre - second.centre).squaredNorm() > reach * reach) continue;
     const bool fixed_first = scene_.bodies[pair.first].fixed;
     const bool fixed_second = scene_.bodies[pair.second].fixed;
     if (fixed_first && fixed_second) continue;

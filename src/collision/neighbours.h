@@ -41,7 +41,7 @@ class BroadPhase {
   void update(int index, const Vector3& centre, double radius);
   /// Indices, ascending, of bodies whose box touches min..max. Valid until the next call.
   const std::vector<int>& query(const Vector3& min, const Vector3& max);
-  /// All pairs whose boxes touch, the smaller index first, in no order. Valid until the next call.
+  /// All pairs whose spheres touch, the smaller index first, in no order. Valid until the next call.
   const std::vector<std::pair<int, int>>& pairs();
 
  private:

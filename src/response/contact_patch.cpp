@@ -77,7 +77,7 @@ PatchPoint make_point(double step, const SpringContact& row, const Mobility6& mo
   const Vector3 lever = patch.axes * (from_origin.cross(vector(spring.normal)) + vector(row.tilt));
   point.place = patch.axes * from_origin;
   point.lever_u = lever.x(), point.lever_v = lever.y();
-  point.depth = spring.depth, point.ahead = spring.ahead, point.fade = spring.fade;
+  point.spring = spring;
   point.friction = spring.friction;
   point.bond = step * spring.bond;
   point.nonlinear = spring.pad > 0.0 || spring.yields < kMaxYield;
@@ -91,10 +91,10 @@ PatchPoint make_point(double step, const SpringContact& row, const Mobility6& mo
                         v = point.sliding(point.by_friction.col(1));
   const double tangential_mobility =
       patch.grips ? mobility.topLeftCorner<3, 3>().trace() : max_eigenvalue(-u[0], -v[0], -v[1]);
-  const double stiffness = step * spring.stiffness, impulse = stiffness * point.ahead;
+  const double stiffness = step * spring.stiffness, impulse = stiffness * spring.ahead;
   point.compliance = 1.0 / impulse;
   point.soft_stiffness = stiffness / (1.0 + impulse * point.normal_mobility);
-  const double shear = step * spring.shear, drag = shear * point.ahead;
+  const double shear = step * spring.shear, drag = shear * spring.ahead;
   const double softening = 1.0 / (1.0 + drag * tangential_mobility);
   point.kept = 1.0 - softening;
   point.damping = softening * drag;
@@ -102,23 +102,21 @@ PatchPoint make_point(double step, const SpringContact& row, const Mobility6& mo
   return point;
 }
 
-/// Normal impulses p of a patch change its rates by W p, and springs apply k (d - e u); k includes
-/// the step:
+/// Normal impulses p of a patch change its rates by W p, and springs apply k (d - e u); k includes the step.
+/// Returns the matrix of
 ///
 ///     (W + 1/(k e)) p = d / e - u_0,      W_ij = 1/m_a + 1/m_b + l_ai.I_a^-1 l_aj + l_bi.I_b^-1 l_bj,   l =
 ///     r x n
 ///
 /// Unused rows are the identity's. 1/(k e) keeps the matrix regular, though four points have only three
 /// independent normal loads.
-void invert(const PatchPoint* points, ContactPatch& patch) {
-  if (patch.count < 2 || patch.count > kMaxTogether) return;
-  Eigen::Matrix4d& system = patch.system;
-  system.setIdentity();
-  for (int i = 0; i < patch.count; ++i) {
+Eigen::Matrix4d normal_system(const PatchPoint* points, int count) {
+  Eigen::Matrix4d system = Eigen::Matrix4d::Identity();
+  for (int i = 0; i < count; ++i) {
     for (int j = 0; j <= i; ++j) system(i, j) = system(j, i) = points[i].rate(points[j].by_normal);
     system(i, i) += points[i].compliance;
   }
-  patch.inverse = system.inverse();
+  return system;
 }
 
 /// Newton's method, safeguarded by a bracket, with p(u) = h Spring::normal_force().
@@ -128,13 +126,12 @@ void invert(const PatchPoint* points, ContactPatch& patch) {
 /// g increases, so it has one zero, and there p = (u - u_0) / w. The upper bound is the solution of the plain
 /// spring: pad and fade only reduce its force. A Newton step that leaves the bracket is replaced by
 /// bisection: beyond the release speed p is 0, and its slope does not show where it begins.
-double find_faded_impulse(double step, const PatchPoint& point, const Spring& spring, double rate,
-                          double plain) {
+double find_faded_impulse(double step, const PatchPoint& point, double rate, double plain) {
   const double mobility = point.normal_mobility, response = step * mobility;
   double low = rate, high = rate + mobility * plain, at = high;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     double slope;
-    const double residual = at - rate - response * spring.normal_force(at, slope);
+    const double residual = at - rate - response * point.spring.normal_force(at, slope);
     (residual > 0.0 ? high : low) = at;
     const double next = at - residual / (1.0 + response * slope);
     if (std::abs(next - at) <= 1e-9 * (high - rate)) break;
@@ -146,20 +143,19 @@ double find_faded_impulse(double step, const PatchPoint& point, const Spring& sp
 /// Normal impulse by the contact's law, if the rate is `rate` without it. Closed form if neither fade nor pad
 /// acts. The rate with this impulse is the highest possible; where even that hardly separates, the quadratic
 /// fade takes at most a millionth.
-[[gnu::always_inline]] inline double find_normal_impulse(double step, const PatchPoint& point,
-                                                         const Spring& spring, double rate) {
-  const double deep = point.depth - point.ahead * rate;
+[[gnu::always_inline]] inline double find_normal_impulse(double step, const PatchPoint& point, double rate) {
+  const double deep = point.spring.depth - point.spring.ahead * rate;
   if (deep <= 0.0) return 0.0;
   const double plain = point.soft_stiffness * deep;
-  if (!point.nonlinear && (rate + point.normal_mobility * plain) * point.fade <= kMinFade) return plain;
-  return find_faded_impulse(step, point, spring, rate, plain);
+  if (!point.nonlinear && (rate + point.normal_mobility * plain) * point.spring.fade <= kMinFade)
+    return plain;
+  return find_faded_impulse(step, point, rate, plain);
 }
 
-[[gnu::always_inline]] inline void relax_normal(double step, PatchPoint& point, const Spring& spring,
-                                                Motion6& motion, Motion6& impulse) {
+[[gnu::always_inline]] inline void relax_normal(double step, PatchPoint& point, Motion6& motion,
+                                                Motion6& impulse) {
   double& last = point.impulses[kNormal];
-  const double normal =
-      find_normal_impulse(step, point, spring, point.rate(motion) - point.normal_mobility * last);
+  const double normal = find_normal_impulse(step, point, point.rate(motion) - point.normal_mobility * last);
   if (normal == last) return;
   motion += (normal - last) * point.by_normal;
   add_normal(point, normal - last, impulse);
@@ -197,12 +193,12 @@ void PatchPoint::add_impulses(Motion6& sum) const {
 }
 
 // The immovable body is the last one.
-ContactPatch make_patch(double step, const std::vector<SpringContact>& rows, std::size_t first, int count,
+ContactPatch make_patch(double step, const SpringContact* rows, int count,
                         const std::vector<PatchBody>& bodies, std::vector<PatchPoint>& points) {
   ContactPatch patch;
-  const SpringContact& row = rows[first];
+  const SpringContact& row = rows[0];
   const Vector3 n = vector(row.spring.normal);
-  patch.first = first, patch.count = count, patch.separations = 0;
+  patch.first = points.size(), patch.count = count, patch.separations = 0;
   patch.a = row.a == SpringContact::kNone ? static_cast<int>(bodies.size()) - 1 : row.a, patch.b = row.b;
   patch.grips = n.isZero(0.0), patch.twists = row.spring.twist_stiffness > 0.0;
   patch.axes.row(2) = patch.grips ? Vector3::UnitZ() : n;
@@ -219,8 +215,9 @@ ContactPatch make_patch(double step, const std::vector<SpringContact>& rows, std
   add(patch.b, patch.arm_b);
   if (row.a != SpringContact::kNone) add(patch.a, patch.arm_a);
   patch.by_twist = -mobility.col(5);
-  for (int i = 0; i < count; ++i) points.push_back(make_point(step, rows[points.size()], mobility, patch));
-  invert(&points[first], patch);
+  for (int i = 0; i < count; ++i) points.push_back(make_point(step, rows[i], mobility, patch));
+  if (count > 1 && count <= kMaxTogether)
+    patch.inverse = normal_system(&points[patch.first], count).inverse();
   return patch;
 }
 
@@ -240,15 +237,15 @@ void ContactPatch::start_from(const Vector3& force, double step, PatchPoint& poi
 //
 // The limit of friction is by the new normal impulse, not the last iterate's. This minimises no convex
 // function, but its fixed point is Coulomb's law itself.
-void ContactPatch::relax(double step, PatchPoint* points, const SpringContact* rows, Motion6& motion,
+void ContactPatch::relax(double step, PatchPoint* points, const Spring* twisted, Motion6& motion,
                          Motion6& impulse) {
   if (grips) return relax_grip(*points, motion, impulse);
   const bool together = relax_normals_together(points, motion, impulse);
   for (int i = 0; i < count; ++i) {
-    if (!together) relax_normal(step, points[i], rows[i].spring, motion, impulse);
+    if (!together) relax_normal(step, points[i], motion, impulse);
     relax_friction(points[i], motion, impulse);
   }
-  if (twists) relax_twist(step, rows->spring, *points, motion, impulse);
+  if (twists) relax_twist(step, *twisted, *points, motion, impulse);
 }
 
 /// Solves a patch's normal impulses simultaneously if the fade of none acts; otherwise returns false and
@@ -265,8 +262,8 @@ void ContactPatch::relax(double step, PatchPoint* points, const SpringContact* r
   bool open = true;
   for (int i = 0; i < count; ++i) {
     const PatchPoint& point = points[i];
-    missing_speeds[i] =
-        point.depth / point.ahead - point.rate(motion) - point.compliance * point.impulses[kNormal];
+    missing_speeds[i] = point.spring.depth / point.spring.ahead - point.rate(motion) -
+                        point.compliance * point.impulses[kNormal];
     open = open && missing_speeds[i] <= 0.0 && point.impulses[kNormal] == 0.0;
   }
   if (open) return true;
@@ -276,6 +273,7 @@ void ContactPatch::relax(double step, PatchPoint* points, const SpringContact* r
   if (pulls) {
     // Some contacts are open: projected Gauss-Seidel, so that none pulls.
     more.setZero();
+    const Eigen::Matrix4d system = normal_system(points, count);
     for (int sweep = 0; sweep < kInnerSweeps; ++sweep) {
       for (int i = 0; i < count; ++i) {
         const double change =
@@ -288,7 +286,9 @@ void ContactPatch::relax(double step, PatchPoint* points, const SpringContact* r
   for (int i = 0; i < count; ++i) {
     const PatchPoint& point = points[i];
     const double normal = point.impulses[kNormal] + more[i];
-    if (normal > 0.0 && (point.depth / point.ahead - point.compliance * normal) * point.fade > kMinFade) {
+    if (normal > 0.0 &&
+        (point.spring.depth / point.spring.ahead - point.compliance * normal) * point.spring.fade >
+            kMinFade) {
       ++separations;
       return false;
     }
@@ -331,7 +331,7 @@ void ContactPatch::fill_response(double step, const PatchPoint& point, const Mot
   row.response.normal_force = normal / step;
   row.response.torque = point.impulses[kTwist] / step;
   row.response.trial_squared = trial.squaredNorm() / (step * step);
-  row.response.drawn = triple(vector(row.spring.stretch) + point.ahead * (axes.transpose() * sliding));
+  row.response.drawn = triple(vector(row.spring.stretch) + point.spring.ahead * (axes.transpose() * sliding));
   row.spring.slip_limit = (point.friction * normal + point.bond) / step;
 }
 

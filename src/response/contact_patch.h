@@ -29,7 +29,7 @@ struct PatchPoint {
   Vector3 place;                            // of friction, from the patch's origin [m]
   double lever_u, lever_v;                  // r x n, the lever arm of the normal impulse about the origin [m]
   double normal_mobility;                   // change of the rate by a unit impulse along n [1/kg]
-  double depth, ahead, fade;
+  NormalSpring spring;
   double compliance;        // 1 / (k e), along n [1/kg]
   double soft_stiffness;    // times the step, reduced by the bodies' mobility [N s/m]
   double kept, damping;     // factors of the last friction impulse and of the sliding in the next one
@@ -51,16 +51,16 @@ struct PatchPoint {
 /// so is a point of a grip. Its axes are u, v and the normal n, its origin is the first point of friction.
 /// Relative motions are those of a against b there, and impulses act on b.
 struct ContactPatch {
-  std::size_t first;  // index of its first point, and row
+  std::size_t first;  // index of its first point
   int count, a, b;
-  int separations;                  // sweeps that could not solve it simultaneously
-  bool grips;                       // true if its spring acts alike in all directions
-  bool twists;                      // true for a hand's contact, which resists spin about n
-  Matrix3 axes;                     // rows u, v, n
-  Vector3 arm_a, arm_b;             // of the origin, world axes [m]
-  Motion6 drive;                    // relative motion by that of a hand
-  Motion6 by_twist;                 // change of the relative motion by a unit impulse about n
-  Eigen::Matrix4d system, inverse;  // rates by normal impulses, with springs [1/kg], [kg]
+  int separations;          // sweeps that could not solve it simultaneously
+  bool grips;               // true if its spring acts alike in all directions
+  bool twists;              // true for a hand's contact, which resists spin about n
+  Matrix3 axes;             // rows u, v, n
+  Vector3 arm_a, arm_b;     // of the origin, world axes [m]
+  Motion6 drive;            // relative motion by that of a hand
+  Motion6 by_twist;         // change of the relative motion by a unit impulse about n
+  Eigen::Matrix4d inverse;  // normal impulses by missing speeds, if solved together [kg]
 
   Motion6 relative_motion(const PatchBody& a, const PatchBody& b) const;
   /// Changes the motions of the bodies by impulses on b.
@@ -68,9 +68,9 @@ struct ContactPatch {
   /// Sets the impulses of a point to those of a force in world axes [N]: f = t - p n, p cut off at 0.
   void start_from(const Vector3& force, double step, PatchPoint& point, PatchBody& a, PatchBody& b) const;
   /// Solves the patch with all others fixed: changes the relative motion, and adds to the impulse that
-  /// apply() then gives to the bodies. `points`, `rows`: its first.
-  void relax(double step, PatchPoint* points, const SpringContact* rows, Motion6& motion, Motion6& impulse);
-  /// Writes the response that settle() reads.
+  /// apply() then gives to the bodies. `points`: its first. `twisted`: the spring of its point if it twists.
+  void relax(double step, PatchPoint* points, const Spring* twisted, Motion6& motion, Motion6& impulse);
+  /// Writes the response that settle() reads. `row`: as the point was made from.
   void fill_response(double step, const PatchPoint& point, const Motion6& motion, SpringContact& row) const;
 
  private:
@@ -79,8 +79,8 @@ struct ContactPatch {
                    Motion6& impulse) const;
 };
 
-/// Makes the patch of `count` rows from `first` on, and adds its points.
-ContactPatch make_patch(double step, const std::vector<SpringContact>& rows, std::size_t first, int count,
+/// Makes the patch of `count` rows, and adds its points.
+ContactPatch make_patch(double step, const SpringContact* rows, int count,
                         const std::vector<PatchBody>& bodies, std::vector<PatchPoint>& points);
 
 // Inline, as each sweep calls them for each patch.

@@ -56,15 +56,16 @@ void GaussSeidelSolver::begin(const ContactStep& step, const Island& island,
   for (const IslandBody& body : island.bodies)
     add_body(step.scene.bodies[body.body], step.bodies[body.body], step);
   bodies_.push_back({Motion6::Zero(), 0.0, Matrix3::Zero()});
-  make_hand_rows(step, island, rows_);
-  std::size_t row = 0;
+  make_hand_rows(step, island, hand_rows_);
+  points_.reserve(hand_rows_.size() + island.links.size());
+  const SpringContact* row = hand_rows_.data();
   for (const IslandBody& body : island.bodies) {
     for (std::size_t i = body.first; i < body.last; ++i) {
       if (!step.contacts[i].ignored) add_patch(row++, 1, &last_forces[step.body_contacts.size() + i]);
     }
   }
   const Vector3 none = Vector3::Zero();
-  while (row < rows_.size()) add_patch(row++, 1, &none);  // grips
+  while (row < hand_rows_.data() + hand_rows_.size()) add_patch(row++, 1, &none);  // grips
   add_links(step, island);
 }
 
@@ -99,21 +100,20 @@ void GaussSeidelSolver::add_links(const ContactStep& step, const Island& island)
 }
 
 void GaussSeidelSolver::add_link(const ContactStep& step, const Range& range) {
-  const std::size_t first = rows_.size();
+  link_rows_.resize(range.last - range.first);
   for (std::size_t index = range.first; index < range.last; ++index) {
-    rows_.emplace_back();
-    make_link_row(step, *island_, step.body_contacts[index], rows_.back());
+    make_link_row(step, *island_, step.body_contacts[index], link_rows_[index - range.first]);
     linked_.push_back(index);
   }
-  add_patch(first, static_cast<int>(range.last - range.first), &(*last_forces_)[range.first]);
+  add_patch(link_rows_.data(), static_cast<int>(link_rows_.size()), &(*last_forces_)[range.first]);
 }
 
-/// Adds the patch of the rows from `first` on, with the last step's forces as warm start.
-void GaussSeidelSolver::add_patch(std::size_t first, int count, const Vector3* forces) {
-  patches_.push_back(make_patch(step_, rows_, first, count, bodies_, points_));
+/// Adds the patch of the rows, with the last step's forces as warm start.
+void GaussSeidelSolver::add_patch(const SpringContact* rows, int count, const Vector3* forces) {
+  patches_.push_back(make_patch(step_, rows, count, bodies_, points_));
   const ContactPatch& patch = patches_.back();
   for (int i = 0; i < count; ++i)
-    patch.start_from(forces[i], step_, points_[first + i], body(patch.a), body(patch.b));
+    patch.start_from(forces[i], step_, points_[patch.first + i], body(patch.a), body(patch.b));
 }
 
 /// Returns the closing speed that the surfaces lack for a force [m/s].
@@ -173,7 +173,8 @@ bool GaussSeidelSolver::admit_closing(const ContactStep& step) {
 [[gnu::always_inline]] inline void GaussSeidelSolver::relax(ContactPatch& patch) {
   PatchBody &a = body(patch.a), &b = body(patch.b);
   Motion6 motion = patch.relative_motion(a, b), impulse = Motion6::Zero();
-  patch.relax(step_, &points_[patch.first], &rows_[patch.first], motion, impulse);
+  patch.relax(step_, &points_[patch.first], patch.twists ? &hand_rows_[patch.first].spring : nullptr, motion,
+              impulse);
   if (impulse != Motion6::Zero()) patch.apply(impulse, a, b);
 }
 
@@ -314,7 +315,15 @@ void GaussSeidelSolver::finish(ContactStep& step, const Island& island) {
     for (int k = 0; k < patch.count; ++k) {
       const std::size_t i = patch.first + k;
       points_[i].add_impulses(impulse);
-      patch.fill_response(step_, points_[i], motion, rows_[i]);
+      if (i < hand_rows_.size()) {
+        patch.fill_response(step_, points_[i], motion, hand_rows_[i]);
+        continue;
+      }
+      BodyContact& contact = step.body_contacts[linked_[i - hand_rows_.size()]];
+      SpringContact row;
+      make_link_row(step, island, contact, row);
+      patch.fill_response(step_, points_[i], motion, row);
+      settle(step, row, contact);
     }
     const Vector3 linear = patch.axes.transpose() * impulse.head<3>();
     const Vector3 angular = patch.axes.transpose() * impulse.tail<3>();
@@ -326,8 +335,7 @@ void GaussSeidelSolver::finish(ContactStep& step, const Island& island) {
     apply(patch.b, 1.0, patch.arm_b);
     if (patch.a != static_cast<int>(free_.size())) apply(patch.a, -1.0, patch.arm_a);
   }
-  const SpringContact* row = settle_hand_rows(step, island, rows_.data());
-  for (const std::size_t index : linked_) settle(step, *row++, step.body_contacts[index]);
+  settle_hand_rows(step, island, hand_rows_.data());
   for (const Range& range : open_) {
     for (std::size_t i = range.first; i < range.last; ++i)
       step.body_contacts[i].friction = Friction::sticking;

@@ -33,7 +33,7 @@ class GaussSeidelSolver {
   void add_body(const Body& body, const BodyState& state, const ContactStep& step);
   void add_links(const ContactStep& step, const Island& island);
   void add_link(const ContactStep& step, const Range& range);
-  void add_patch(std::size_t first, int count, const Vector3* forces);
+  void add_patch(const SpringContact* rows, int count, const Vector3* forces);
   void relax(ContactPatch& patch);
 
   double max_mass_ratio() const;
@@ -50,17 +50,18 @@ class GaussSeidelSolver {
   const std::vector<Vector3>* last_forces_ = nullptr;
   const Island* island_ = nullptr;
   double step_ = 0.0;
-  std::vector<PatchBody> bodies_;  // the last one is immovable: fixtures and hands
-  std::vector<Motion6> free_;      // at the end of the step, without contacts
-  std::vector<PatchPoint> points_;
+  std::vector<PatchBody> bodies_;   // the last one is immovable: fixtures and hands
+  std::vector<Motion6> free_;       // at the end of the step, without contacts
+  std::vector<PatchPoint> points_;  // of hands and grips, then of links
   std::vector<ContactPatch> patches_;
-  std::vector<SpringContact> rows_;  // of the points
-  std::vector<std::size_t> linked_;  // of the links' rows: index in ContactStep::body_contacts
-  std::vector<Range> open_;          // between bodies: without impulse at checked_
-  std::vector<Motion6> checked_;     // motions at which open_ was checked
-  double min_missing_speed_ = 0.0;   // smallest missing_speed() of open_ at checked_ [m/s]
-  double max_arm_ = 0.0;             // of any contact [m]
-  std::vector<int> levels_;          // of bodies_, above what is immovable
+  std::vector<SpringContact> hand_rows_;  // of the points of hands and grips
+  std::vector<SpringContact> link_rows_;  // of one patch of links
+  std::vector<std::size_t> linked_;       // of the links' points: index in ContactStep::body_contacts
+  std::vector<Range> open_;               // between bodies: without impulse at checked_
+  std::vector<Motion6> checked_;          // motions at which open_ was checked
+  double min_missing_speed_ = 0.0;        // smallest missing_speed() of open_ at checked_ [m/s]
+  double max_arm_ = 0.0;                  // of any contact [m]
+  std::vector<int> levels_;               // of bodies_, above what is immovable
   // State before a sweep, and the current search directions.
   std::vector<Motion6> motions_before_, motion_directions_;
   std::vector<PatchImpulses> impulses_before_, impulse_directions_;

@@ -24,23 +24,34 @@ struct SpringResponse {
   double torque_slope;   ///< -d torque / d spin of 2 [N m s]
 };
 
+/// The spring of a contact along its normal.
+struct NormalSpring {
+  double depth;          ///< at the start of the step [m]
+  double pad;            ///< compression over which a soft pad stiffens; 0: constant stiffness [m]
+  double half_over_pad;  ///< 1 / (2 pad); 0 if pad is 0 [1/m]
+  double yields;         ///< depth at full stiffness beyond which the finger complies [m]
+  double ahead;          ///< look-ahead time of the spring: the step plus damping [s]
+  double fade;           ///< 1 / separation speed at which the normal force vanishes; 0: no fade [s/m]
+  double stiffness;      ///< beyond the pad [N/m]
+
+  /// Normal force over stiffness as a function of depth, and its slope. The fingertip pad stiffens until it
+  /// is compressed to `pad`; the finger complies beyond its strength.
+  [[gnu::always_inline]] inline void compress(double deep, double& pressed, double& steepness) const;
+
+  /// Normal force at a rate of the gap [N], and its decrease with the rate [N s/m].
+  [[gnu::always_inline]] inline double normal_force(double rate, double& slope) const;
+};
+
 /// The spring of one contact in the implicit model: the separation of its ends at the end of the step is a
 /// function of their relative velocity then. Body 1 is the hand or body a; forces are on body 2, the object
 /// or body b. World axes, n from 2 to 1.
-struct Spring {
+struct Spring : NormalSpring {
   // State at the start of the step.
   Triple normal;
   Triple stretch;  ///< tangential: end on 1 minus end on 2 [m]
-  double depth;    ///< [m]
   double twist;    ///< elastic rotation of 1 about n relative to 2 [rad]
 
   // Parameters.
-  double pad;              ///< compression over which a soft pad stiffens; 0: constant stiffness [m]
-  double half_over_pad;    ///< 1 / (2 pad); 0 if pad is 0 [1/m]
-  double yields;           ///< depth at full stiffness beyond which the finger complies [m]
-  double ahead;            ///< look-ahead time of the spring: the step plus damping [s]
-  double fade;             ///< 1 / separation speed at which the normal force vanishes; 0: no fade [s/m]
-  double stiffness;        ///< along the normal, beyond the pad [N/m]
   double shear;            ///< tangential stiffness [N/m]
   double twist_stiffness;  ///< 0: no torsional resistance [N m/rad]
   double friction;         ///< Coulomb's coefficient: static while sticking, dynamic while slipping
@@ -50,13 +61,6 @@ struct Spring {
   // Coulomb's limits, by the normal force of the last iterate.
   double slip_limit;   ///< [N]
   double twist_limit;  ///< [N m]
-
-  /// Normal force over stiffness as a function of depth, and its slope. The fingertip pad stiffens until it
-  /// is compressed to `pad`; the finger complies beyond its strength.
-  [[gnu::always_inline]] inline void compress(double deep, double& pressed, double& steepness) const;
-
-  /// Normal force at a rate of the gap [N], and its decrease with the rate [N s/m].
-  [[gnu::always_inline]] inline double normal_force(double rate, double& slope) const;
 
   /// Evaluates the spring at the relative velocity `u` of 1 at the contact point and the relative spin about
   /// n. `renew_limits`: first sets Coulomb's limits by the normal force there.
@@ -91,7 +95,7 @@ constexpr double kYieldedStiffness = 0.02;
 //
 // The slope is zero only at d = 0, so two fingers that both comply still centre the object between them.
 // Without a pad 1 / 2D is 0, as infinity would give 0 times infinity. Without a strength limit Y is infinite.
-inline void Spring::compress(double deep, double& pressed, double& steepness) const {
+inline void NormalSpring::compress(double deep, double& pressed, double& steepness) const {
   const double soft = std::min(deep, pad);
   pressed = deep - soft + soft * soft * half_over_pad;
   steepness = pad <= deep ? 1.0 : 2.0 * deep * half_over_pad;
@@ -132,7 +136,7 @@ inline void Spring::compress(double deep, double& pressed, double& steepness) co
 // The slopes omit dL/dv, the change of the limits with N: Coulomb's law is not associated (de Saxce & Feng
 // 1998), so the matrix would not be symmetric. Held limits are Tresca's friction; renewing them from iterate
 // to iterate is the fixed-point iteration to Coulomb's (Haslinger 1983).
-inline double Spring::normal_force(double rate, double& slope) const {
+inline double NormalSpring::normal_force(double rate, double& slope) const {
   const double deep = std::max(0.0, depth - ahead * rate);
   const double parting = std::min(std::max(rate, 0.0) * fade, 1.0);
   const double kept = 1.0 - parting * parting;

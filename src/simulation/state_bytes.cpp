@@ -293,13 +293,16 @@ class Parts {
     not_hashed(a, b, shape_a, shape_b, feature);
     in_order(part);
   }
-  void one(BodyContact& part) {
-    auto& [key, anchor_a, anchor_b, friction, struck, still, point, normal, arm_a, arm_b, friction_offset,
-           stretch, material, depth, share, first_touch, force, impulse] = part;
+  void one(BodyContactMemory& part) {
+    auto& [key, friction, struck, still, depth, anchor_a, anchor_b, force] = part;
     all(key, anchor_a, anchor_b, depth);
     one_of(friction, Friction::slipping);
     all(struck, still, force);
-    not_hashed(point, normal, arm_a, arm_b, friction_offset, stretch, material, share, first_touch, impulse);
+  }
+  void one(BodyContact& c) {
+    one(static_cast<BodyContactMemory&>(c));
+    not_hashed(c.point, c.normal, c.arm_a, c.arm_b, c.friction_offset, c.stretch, c.material, c.share,
+               c.first_touch, c.impulse);
   }
   void one(PalmLag& part) {
     auto& [whole, frame] = part;

@@ -141,6 +141,13 @@ TEST(BroadPhase, finds_what_an_exhaustive_search_finds) {
       ASSERT_EQ(broad_phase.query(middle - half, middle + half), expected) << round;
       found += static_cast<int>(expected.size());
     }
+    std::vector<std::pair<int, int>> touching, pairs = broad_phase.pairs();
+    for (int i = 0; i < static_cast<int>(balls.size()); ++i)
+      for (int j = i + 1; j < static_cast<int>(balls.size()); ++j)
+        if ((balls[i].centre - balls[j].centre).norm() <= balls[i].radius + balls[j].radius)
+          touching.emplace_back(i, j);
+    std::sort(pairs.begin(), pairs.end());
+    ASSERT_EQ(pairs, touching) << round;
   }
   EXPECT_GT(found, 300);
 }

@@ -24,19 +24,22 @@ struct BodyContactKey {
   friend bool operator==(const BodyContactKey& x, const BodyContactKey& y) { return x.order() == y.order(); }
 };
 
-/// A contact of body a, in the hand's role, with the free body b. World frame unless noted; n points from b
-/// to a; impulse and force act on b, their opposites on a.
-struct BodyContact {
+/// Part of a contact between bodies that persists while the surfaces touch.
+struct BodyContactMemory {
   BodyContactKey key{};
-
-  // Persistent while the surfaces touch.
+  Friction friction = Friction::sticking;
+  bool struck = false;                 ///< the impulse of this approach has been applied
+  double still = 0.0;                  ///< time for which both bodies have been nearly at rest [s]
+  double depth = 0.0;                  ///< > 0 overlap, < 0 gap [m]
   Vector3 anchor_a = Vector3::Zero();  ///< anchor of friction on a, body frame
   Vector3 anchor_b = Vector3::Zero();  ///< anchor of friction on b, body frame
-  Friction friction = Friction::sticking;
-  bool struck = false;  ///< the impulse of this approach has been applied
-  double still = 0.0;   ///< time for which both bodies have been nearly at rest [s]
+  Vector3 force = Vector3::Zero();     ///< of the last step [N]
+};
 
-  // In this step.
+/// A contact of body a, in the hand's role, with the free body b: what persists, the geometry in this step,
+/// and the response. World frame unless noted; n points from b to a; impulse and force act on b, their
+/// opposites on a.
+struct BodyContact : BodyContactMemory {
   Vector3 point = Vector3::Zero();    ///< midway between the surfaces at first touch
   Vector3 normal = Vector3::UnitZ();  ///< n
   Vector3 arm_a = Vector3::Zero();    ///< from the centre of a to the point
@@ -46,13 +49,9 @@ struct BodyContact {
   Vector3 friction_offset = Vector3::Zero();
   Vector3 stretch = Vector3::Zero();  ///< anchor a minus anchor b, perpendicular to n [m]
   Material material;                  ///< combined from both bodies
-  double depth = 0.0;                 ///< > 0 overlap, < 0 gap [m]
   double share = 1.0;                 ///< of the pair's stiffness; the shares of a pair's points sum to 1
   /// Of a separated pair, from the start of the step [s]; point, arms and depth are those then. < 0: none.
   double first_touch = -1.0;
-
-  // Response in this step.
-  Vector3 force = Vector3::Zero();    ///< warm start of the next step [N]
   Vector3 impulse = Vector3::Zero();  ///< of an impact [N s]
 };
 
