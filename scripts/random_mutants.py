@@ -36,7 +36,7 @@ SWAPS = [
 ]
 NUMBER = re.compile(r"(?<![\w.'\[<])(\d[\d']*\.\d*(?:e[-+]?\d+)?|\d+e[-+]?\d+|\d[\d']*)(?![\w.'])")
 STATEMENT = re.compile(r"(\s+)(?:[\w.>\[\]()*-]+ [-+*/]?= .*|[\w.>:-]+\(.*\));$")
-NO_STATEMENT = re.compile(r"\s+(?:return|throw|const|auto|double|delete|using)\b")
+NO_STATEMENT = re.compile(r"\s+(?:return|throw|const|auto|double|delete|using)\b|.*[.>]reserve\(")  # memory alone
 NO_CODE = ("#", "/", "*", "using", "namespace", "template", "static_assert", "struct", "class", "case", "enum")
 
 

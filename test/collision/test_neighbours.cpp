@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "collision/closest_features.h"
 #include "collision/neighbours.h"
+#include "collision/overlap.h"
 #include "random_capsules.h"
-#include "support/fixtures.h"
+#include "support/joints.h"
 
 namespace mrhi {
 namespace {
@@ -112,6 +114,20 @@ TEST(BoxAround, holds_all_shapes_of_a_body_and_no_more) {
   const Eigen::AlignedBox3d box = box_around(body);
   EXPECT_LE((box.min() - Vector3(-0.01, -0.05, -0.03)).norm(), 1e-15);
   EXPECT_LE((box.max() - Vector3(0.11, 0.05, 0.06)).norm(), 1e-15);
+}
+
+// Those that a joint connects never touch either, but are not told: they may overlap.
+TEST(OverlapsInMechanisms, are_all_told) {
+  Scene scene;
+  for (int i = 0; i < 4; ++i) {
+    Body body = testing::box_body(Vector3::Constant(0.1), 0.1);
+    body.name = "link" + std::to_string(i);
+    scene.bodies.push_back(body);
+    if (i > 0) scene.joints.push_back(testing::hinge(i - 1, i, Pose(), Pose(), 0.0));
+  }
+  std::set<std::pair<int, int>> pairs;
+  for (const auto& [a, b] : overlaps_in_mechanisms(scene)) pairs.insert(std::minmax(a, b));
+  EXPECT_EQ(pairs, (std::set<std::pair<int, int>>{{0, 2}, {0, 3}, {1, 3}}));
 }
 
 struct Ball {

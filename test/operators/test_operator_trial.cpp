@@ -187,5 +187,21 @@ TEST(OperatorScene, what_has_weight_stands_on_something_and_what_falls_off_is_pu
   EXPECT_EQ(scene.gravity, task.gravity);
 }
 
+// Rails at both ends leave the middle free, where fingers reach under what lies flat.
+TEST(OperatorScene, what_lies_flat_stands_on_two_rails_and_all_else_on_one_block) {
+  const auto stand = [](double height) {
+    return stand_under(testing::box_body(Vector3(0.1, 0.06, height), 0.1));
+  };
+  const Body rails = stand(0.0198), block = stand(0.0202);
+  ASSERT_EQ(rails.shapes.size(), 2u);
+  EXPECT_EQ(block.shapes.size(), 1u);
+  for (const double side : {1.0, -1.0}) {
+    const PlacedShape& rail = rails.shapes[side > 0.0 ? 0 : 1];
+    const Vector3 half = std::get<Box>(rail.shape).half_extents;
+    EXPECT_NEAR(side * rail.pose.position.x() + half.x(), 0.05, 1e-12);  // flush with the end
+    EXPECT_NEAR(half.y(), 0.03, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace mrhi

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cinttypes>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -12,6 +10,7 @@
 #include "mr_hand_interaction/synthetic/scripted_motion.h"
 #include "replay/replay_files.h"
 #include "support/random_way.h"
+#include "support/reviewed_bits.h"
 #include "support/tessellated.h"
 
 namespace mrhi {
@@ -21,11 +20,7 @@ class Digest {
  public:
   void add(double number) { hash_.add(&number, sizeof number); }
   void add(const Vector3& vector) { hash_.add(vector.data(), sizeof vector); }
-  std::string text() const {
-    char text[20];
-    std::snprintf(text, sizeof text, "%016" PRIx64, hash_.value);
-    return text;
-  }
+  std::string text() const { return test::hexadecimal(hash_.value); }
 
  private:
   Fnv1a hash_ = {};

@@ -1,9 +1,5 @@
-#include <gnu/libc-version.h>
 #include <gtest/gtest.h>
 
-#include <cinttypes>
-#include <cstdlib>
-#include <map>
 #include <random>
 
 #include "mr_hand_interaction/replay/replay.h"
@@ -16,13 +12,10 @@
 #include "parts.h"
 #include "replay/replay_files.h"
 #include "support/fixtures.h"
+#include "support/reviewed_bits.h"
 
 namespace mrhi {
 namespace {
-
-/// The oracle of a restructuring: bits of replays, one line each, as they were when somebody last looked at
-/// what had changed them. `MR_HAND_WRITE_BITS=1 scripts/test regression` writes it anew.
-const char* const kTable = "test/regression/bits.csv";
 
 /// A scripted motion with a Leap's noise at a tracker's rate, in a scene that is shipped.
 struct NoisyReplay {
@@ -87,18 +80,6 @@ std::vector<NoisyReplay> runs() {
   return all;
 }
 
-/// What bits depend on beside the code: roots and logarithms are the C library's, and those of a processor
-/// with fused multiplication may differ in the last bit.
-std::string platform() {
-#if defined(__x86_64__)
-  const char* processor = __builtin_cpu_supports("fma") ? "x86_64 with fma" : "x86_64";
-#else
-  const char* processor = "another processor";
-#endif
-  return "g++ " + std::to_string(__GNUC__) + "; glibc " + gnu_get_libc_version() + "; Eigen " +
-         std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) + "; " + processor;
-}
-
 std::string bits_of(const NoisyReplay& run) {
   const test::Folder folder;
   std::vector<JointsFrame> frames = test::motion_frames(run.motion, run.rate, 0);
@@ -127,9 +108,7 @@ std::string bits_of(const NoisyReplay& run) {
   std::string tables;
   for (const char* table : {"objects", "contacts", "hands", "events", "joints"})
     tables += test::text_of(folder / (std::string("out/") + table + ".csv"));
-  char text[64];
-  std::snprintf(text, sizeof text, "%016" PRIx64 ",%016zx", state, std::hash<std::string>()(tables));
-  return text;
+  return test::hexadecimal(state) + "," + test::hexadecimal(std::hash<std::string>()(tables));
 }
 
 /// Bodies of every kind of shape, thrown at each other over a table: each kind meets each. Many become one
@@ -193,10 +172,7 @@ std::string bits_of(const Pile& pile) {
     simulation.advance({testing::at(t), {testing::finger(tip + Vector3(0, 0, 0.05), tip, 0.01)}});
     all = 31 * all + hash(simulation.state());
   }
-  char text[64];
-  std::snprintf(text, sizeof text, "%016" PRIx64 ",%016" PRIx64, std::uint64_t(hash(simulation.state())),
-                all);
-  return text;
+  return test::hexadecimal(hash(simulation.state())) + "," + test::hexadecimal(all);
 }
 
 /// A trial of a simulated operator.
@@ -269,33 +245,14 @@ std::string bits_of(const LoadedScene& loaded) {
     for (const std::string& file : files) texts[round] += test::text_of(file);
     urdf = saved;
   }
-  char text[64];
   const std::hash<std::string> hash;
-  std::snprintf(text, sizeof text, "%016zx,%016zx", hash(texts[0]), hash(texts[1]));
-  return text;
+  return test::hexadecimal(hash(texts[0])) + "," + test::hexadecimal(hash(texts[1]));
 }
 
 TEST(Bits, are_those_that_were_reviewed) {
-  std::map<std::string, std::string> reviewed;
-  const std::vector<std::string> lines = test::lines_of(kTable);
-  const bool write = std::getenv("MR_HAND_WRITE_BITS") != nullptr;
-  ASSERT_TRUE(write || lines.size() > 2) << kTable << " has no lines";
-  if (!write && lines[0] != "# " + platform())
-    GTEST_SKIP() << kTable << " was made with " << lines[0].substr(2) << "; this is " << platform();
-  for (const std::string& line : lines) {
-    const std::size_t name = line.rfind(',', line.rfind(',') - 1);
-    if (line[0] != '#') reviewed[line.substr(0, name)] = line.substr(name + 1);
-  }
-  std::string table = "# " + platform() + "\nmotion,scene,model,gravity,rate,hands,state,tables\n", changed;
-  int all = 0, count = 0;
-  const auto compare = [&](const auto& run) {
-    const std::string bits = bits_of(run);
-    table += run.name() + "," + bits + "\n";
-    ++all;
-    if (reviewed[run.name()] == bits) return;
-    changed += "\n  " + run.name();
-    ++count;
-  };
+  test::ReviewedBits bits("test/regression/bits.csv", "motion,scene,model,gravity,rate,hands,state,tables");
+  if (!bits.made_elsewhere().empty()) GTEST_SKIP() << bits.made_elsewhere();
+  const auto compare = [&](const auto& run) { bits.compare(run.name(), bits_of(run)); };
   for (const NoisyReplay& run : runs()) compare(run);
   for (const Pile& pile : kPiles) compare(pile);
   for (const Trial& trial : trials()) compare(trial);
@@ -304,11 +261,7 @@ TEST(Bits, are_those_that_were_reviewed) {
   for (const RandomScene& run : kRandomScenes) compare(run);
   for (std::size_t kind = 0; kind < kKinds; ++kind)
     for (const double scale : {1.0, 1.8}) compare(Grasping{kind, scale});
-  if (write) std::ofstream(kTable) << table;
-  EXPECT_TRUE(write || count == 0)
-      << count << " of " << all << " runs have other bits than " << kTable << ":" << changed
-      << "\nIf that is meant, MR_HAND_WRITE_BITS=1 scripts/test regression writes the table anew; say in the "
-         "commit which figures moved.";
+  bits.check("regression");
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ Live eventful() {
   return live;
 }
 
-struct Replayed {
+struct ReplayedLog {
   YAML::Node run(const Live& live) {
     arguments.input = "hand.bag";
     arguments.output = folder / "out";
@@ -168,7 +168,7 @@ struct Replayed {
 };
 
 TEST(ReplayLog, a_recording_that_begins_in_the_middle_gives_the_live_run_s_hash_after_every_entry) {
-  Replayed replayed;
+  ReplayedLog replayed;
   const Live live = eventful();
   const YAML::Node summary = replayed.run(live), run = summary["live_run"];
   EXPECT_EQ(run["compared"].as<std::size_t>(), live.entries.size());
@@ -189,7 +189,7 @@ TEST(ReplayLog, a_grasp_that_a_deletion_or_a_reset_ends_has_its_end_among_the_ev
     live.play(frames, 0.5, 3.0);
     live.change(change);
     live.play(frames, 3.0, 3.1);
-    const YAML::Node events = Replayed().run(live)["events"];
+    const YAML::Node events = ReplayedLog().run(live)["events"];
     ASSERT_EQ(events["GRASP_BEGIN"].as<int>(0), 1);
     EXPECT_EQ(events["GRASP_END"].as<int>(0), 1);
     EXPECT_EQ(events["CONTACT_END"].as<int>(0), events["CONTACT_BEGIN"].as<int>());
@@ -218,7 +218,7 @@ TEST(ReplayLog, a_device_that_was_there_is_gone_and_came_again_is_there_once) {
   live.change(Delete{"wall"});
   live.change(hatch(0.2));
   live.play(frames, 2.0, 2.5);
-  const YAML::Node summary = Replayed().run(live), run = summary["live_run"];
+  const YAML::Node summary = ReplayedLog().run(live), run = summary["live_run"];
   EXPECT_EQ(run["same"].as<std::size_t>(), live.entries.size());
   EXPECT_EQ(summary["not_known"].size(), 0u);
 }
@@ -229,7 +229,7 @@ TEST(ReplayLog, what_is_left_out_of_the_log_is_told_with_the_time_from_which_all
     return entry.kind == LogEntry::Kind::change;
   });
   change->text = "set: [[gravity, \"[0, 0, 5]\"]]";  // as if something had not been recorded
-  const YAML::Node run = Replayed().run(live)["live_run"];
+  const YAML::Node run = ReplayedLog().run(live)["live_run"];
   EXPECT_NEAR(run["parts_at"].as<double>(), 0.49, 0.02);  // half a second after the recording's first frame
   EXPECT_LT(run["same"].as<int>(), run["compared"].as<int>());
 }
@@ -239,14 +239,14 @@ TEST(ReplayLog, lost_entries_are_counted_and_the_next_beginning_is_gone_on_from)
   live.begin_recording();  // who listens next
   live.play(test::motion_frames("grasp_cube", kRate, 0), 6.5, 6.8);
   live.entries.erase(live.entries.begin() + 20, live.entries.begin() + 30);
-  const YAML::Node run = Replayed().run(live)["live_run"];
+  const YAML::Node run = ReplayedLog().run(live)["live_run"];
   EXPECT_EQ(run["missing"].as<int>(), 10);
   EXPECT_EQ(run["same"].as<int>(), run["compared"].as<int>());
   EXPECT_GT(run["compared"].as<int>(), 20 + 25);
 }
 
 TEST(ReplayLog, options_given_by_hand_stand_above_what_was_recorded_and_are_told) {
-  Replayed replayed;
+  ReplayedLog replayed;
   replayed.arguments.scene = "cube";  // as recorded: nothing is other by this
   replayed.arguments.settings = {{"gravity", "[0, 0, -2]"}};
   const YAML::Node summary = replayed.run(eventful());
@@ -263,7 +263,7 @@ TEST(ReplayLog, another_version_s_state_or_parameters_are_told_and_the_rest_is_d
   begin.state[0] = static_cast<char>(begin.state[0] ^ 1);
   begin.text.replace(begin.text.find("version: "), 9, "version: 9");
   begin.text.replace(begin.text.find("hand/pad"), 8, "hand/pud");
-  const YAML::Node summary = Replayed().run(live);
+  const YAML::Node summary = ReplayedLog().run(live);
   EXPECT_EQ(summary["not_known"].size(), 3u);
   EXPECT_GT(summary["frames"].as<int>(), 100);
   EXPECT_EQ(summary["error"].IsDefined(), false);
@@ -278,7 +278,7 @@ TEST(ReplayLog, a_state_of_an_older_or_newer_format_gives_one_line_and_begins_at
     std::memcpy(&format, state.data(), sizeof format);
     format += static_cast<std::uint64_t>(step);
     std::memcpy(&state[0], &format, sizeof format);
-    Replayed replayed;
+    ReplayedLog replayed;
     const YAML::Node summary = replayed.run(live);
     ASSERT_EQ(summary["not_known"].size(), 1u) << step;
     const std::string line = summary["not_known"][0].as<std::string>();
@@ -316,7 +316,7 @@ TEST(ReplayLog, the_scene_is_built_from_the_recording_alone) {
   live.begin_recording();
   live.play(test::motion_frames("grasp_cube", kRate, 0), 0.0, 1.0);
   std::filesystem::remove_all(folder / "scene");
-  const YAML::Node summary = Replayed().run(live);
+  const YAML::Node summary = ReplayedLog().run(live);
   EXPECT_EQ(summary["live_run"]["same"].as<std::size_t>(), live.entries.size());
   EXPECT_EQ(summary["materials"]["part"]["static_friction"].as<double>(), 0.7);
 }
@@ -338,7 +338,7 @@ TEST(ReplayLog, a_mesh_that_names_other_files_is_replayed_without_them) {
   live.change(spawn);
   live.play(test::motion_frames("grasp_cube", kRate, 0), 0.0, 0.1);
   std::filesystem::remove_all(folder + "/meshes");
-  EXPECT_EQ(Replayed().run(live)["live_run"]["same"].as<std::size_t>(), live.entries.size());
+  EXPECT_EQ(ReplayedLog().run(live)["live_run"]["same"].as<std::size_t>(), live.entries.size());
 }
 
 TEST(ReplayLog, a_recorded_file_stays_in_the_folder_of_the_replay_whatever_its_name) {
@@ -372,7 +372,7 @@ TEST(ReplayLog, markers_keep_every_mesh_of_the_recording_beside_them) {
     live.change(spawn);
   }
   live.play(test::motion_frames("grasp_cube", kRate, 0), 0.0, 0.1);
-  Replayed replayed;
+  ReplayedLog replayed;
   replayed.arguments.marker_frames = {1};
   replayed.run(live);
   std::set<std::string> kept;

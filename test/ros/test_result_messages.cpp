@@ -344,6 +344,7 @@ TEST(JointMessages, tell_what_moves_a_pendulum) {
   things.state.bodies[0].linear_momentum = rod.mass * w.cross(arm);
   const sensor_msgs::JointState message =
       joint_states_message({things.scene, FrameResult(), things.state}, world());
+  EXPECT_EQ(message.header, world());
   ASSERT_EQ(message.name.size(), 2u);
   EXPECT_EQ(message.name[1], "joint_1");
   EXPECT_EQ(message.position[1], 0.4);

@@ -3,9 +3,11 @@
 
 #include <cmath>
 
+#include "math/fnv1a.h"
 #include "mr_hand_interaction/ros/hand_frame_conversion.h"
 #include "ros/marker_layers.h"
 #include "support/fixtures.h"
+#include "support/reviewed_bits.h"
 #include "support/temporary_folder.h"
 #include "training/trials.h"
 
@@ -173,6 +175,37 @@ TEST_F(TrainingMarkers, the_object_is_highlighted_until_it_is_held) {
     EXPECT_GT(point.z, object_.pose.position.z + body_.bounding_radius);
   object_.held = true;
   EXPECT_TRUE(shown("object").empty());
+}
+
+TEST_F(TrainingMarkers, have_the_bits_that_were_reviewed) {
+  test::ReviewedBits bits("test/ros/training_bits.csv", "task,waiting,running");
+  if (!bits.made_elsewhere().empty()) GTEST_SKIP() << bits.made_elsewhere();
+  for (const char* task : {"assemble", "nudge_into_box", "pick_and_place", "tap"}) {
+    session_.emplace(test::shipped_task(task), header_, 0, folder_ / task, 0);
+    const auto hash = [&](std::initializer_list<std::uint8_t> phases) {
+      Fnv1a sum;
+      for (const std::uint8_t phase : phases) {
+        status_.phase = phase;
+        for (int i = 0; i < 4; ++i) {
+          object_.held = i % 2 == 1;
+          status_.inside = i > 1;
+          status_.progress = 0.3 * i;
+          status_.remaining = 2.0 - 0.5 * i;
+          const auto markers = training_markers(*session_, body_, status_, object_);
+          std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(markers));
+          ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+          ros::serialization::serialize(stream, markers);
+          sum.add(bytes.data(), bytes.size());
+        }
+      }
+      return test::hexadecimal(sum.value);
+    };
+    const std::string waiting =
+        hash({TrainingStatus::READY, TrainingStatus::PAUSED, TrainingStatus::FINISHED});
+    session_->begin(0);
+    bits.compare(task, waiting + "," + hash({TrainingStatus::RUNNING, TrainingStatus::PAUSED}));
+  }
+  bits.check("ros");
 }
 
 // The object leaves the hand at 1 cm/s; drift is its way in two seconds.

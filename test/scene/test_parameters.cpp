@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <sstream>
 
 #include "mr_hand_interaction/parameters.h"
@@ -317,6 +318,44 @@ TEST(Parameters, EveryNumberHasTwoFiniteEndsThatAreAllowedAndNothingBeyond) {
   for (const char* number : {"1e300", "-1e300", ".nan", ".inf", "-.inf", "1e999"}) {
     for (const auto& [name, value] : with_number(number)) EXPECT_NE(error(name, value), "") << name << value;
   }
+}
+
+TEST(Parameters, have_the_limits_and_sliders_that_were_reviewed) {
+  // Least and greatest value, then the ends of the slider.
+  const std::map<std::string, std::array<double, 4>> reviewed{
+      {"contact/object_stiffness", {1, 1e+09, 10000, 1e+08}},
+      {"filter/acceleration", {0.001, 1000, 0.01, 10}},
+      {"filter/agility", {0, 1000, 0, 30}},
+      {"filter/beta", {0, 10000, 0, 500}},
+      {"filter/derivative_cutoff", {0.01, 1000, 0.1, 100}},
+      {"filter/min_cutoff", {0.01, 1000, 0.1, 10}},
+      {"filter/noise", {1e-06, 0.1, 1e-05, 0.01}},
+      {"filter/window", {1, 16, 1, 16}},
+      {"gravity", {-100, 100, -10, 10}},
+      {"hand/finger_mass", {0.001, 10, 0.005, 0.5}},
+      {"hand/joint_speed", {0.1, 100, 0.5, 20}},
+      {"hand/pad", {0, 0.01, 0, 0.005}},
+      {"hand/palm_mass", {0.001, 10, 0.05, 2}},
+      {"hand/palm_strength", {0.1, 1000, 1, 200}},
+      {"hand/radius_scale", {0.1, 10, 0.5, 2}},
+      {"hand/restitution", {0, 1, 0, 1}},
+      {"hand/strength", {0.1, 1000, 1, 100}},
+      {"material/dynamic_friction", {0, 10, 0, 2}},
+      {"material/restitution", {0, 1, 0, 1}},
+      {"material/static_friction", {0, 10, 0, 2}},
+      {"material/stiffness", {1, 1e+07, 10, 10000}},
+      {"rendering/control_display_ratio", {1, 2, 1, 2}},
+      {"scene/density", {0.1, 100000, 10, 10000}},
+      {"step", {1e-05, 0.05, 0.0002, 0.01}},
+      {"tracking/hold_time", {0, 10, 0, 2}},
+      {"tracking/max_speed", {0.1, 1000, 1, 50}},
+  };
+  std::map<std::string, std::array<double, 4>> all;
+  for (const std::string& name : parameter_names()) {
+    if (const auto limits = parameter_limits(name))
+      all[name] = {limits->min, limits->max, limits->slider_min, limits->slider_max};
+  }
+  EXPECT_EQ(all, reviewed);
 }
 
 TEST(Parameters, ThatAreNoNumberHaveNoLimits) {

@@ -123,6 +123,24 @@ TEST(Sleeping, a_hand_that_comes_finds_them_awake_and_moves_them_as_if_they_had_
   RecordProperty("same", same);
 }
 
+TEST(Sleeping, those_a_hand_has_woken_sleep_again_after_half_a_second_and_no_sooner) {
+  // 7 mm beside the upper cube, from 2.0 to 2.1 s.
+  const auto comes_near = [](double t) {
+    const Vector3 tip(-0.04, 0, 1.5 * kCube);
+    return t < 2.0 || t > 2.1 ? std::vector<Hand>() : std::vector<Hand>{finger(tip, tip, 0.008)};
+  };
+  Played played(standing_cubes(), true);
+  played.run(1.99, comes_near);
+  EXPECT_TRUE(played.asleep(1) && played.asleep(2));
+  played.run(2.05, comes_near);
+  EXPECT_FALSE(played.asleep(1) || played.asleep(2));
+  played.run(2.48, comes_near);
+  EXPECT_FALSE(played.asleep(1) || played.asleep(2));
+  played.run(2.55, comes_near);
+  EXPECT_TRUE(played.asleep(1) && played.asleep(2));
+  EXPECT_TRUE(played.simulation.state().contacts.empty());
+}
+
 TEST(Sleeping, what_falls_on_a_sleeper_wakes_the_whole_pile) {
   const auto with_ball = [] {
     Scene scene = standing_cubes();
