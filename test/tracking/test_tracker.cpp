@@ -286,5 +286,16 @@ TEST_F(Tracker, joint_speed_limits_the_turn_of_bones_in_the_palm_and_keeps_them_
             1e-9);
 }
 
+// Two joints told in one place: the bone between them has no direction to turn from.
+TEST_F(Tracker, a_bone_that_had_no_length_is_at_once_as_it_is_tracked) {
+  configuration_.hand_joint_speed = 3.0;
+  const int near = capsule_index(1, 1), far = capsule_index(1, 2);
+  Hand stub = bent(1.0);
+  stub.capsules[near].end = stub.capsules[far].start = stub.capsules[near].start;
+  frame(0.0, {stub});
+  frame(0.01, {bent(1.0)});
+  EXPECT_LT((hands_[0].current.capsules[near].end - bent(1.0).capsules[near].end).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace mrhi
