@@ -70,7 +70,7 @@ struct ContactPatch {
   /// Solves the patch with all others fixed: changes the relative motion, and adds to the impulse that
   /// apply() then gives to the bodies. `points`: its first. `twisted`: the spring of its point if it twists.
   void relax(double step, PatchPoint* points, const Spring* twisted, Motion6& motion, Motion6& impulse);
-  /// Writes the response that settle() reads. `row`: as the point was made from.
+  /// Writes the response that settle() reads. `row`: its spring is as the point was made from.
   void fill_response(double step, const PatchPoint& point, const Motion6& motion, SpringContact& row) const;
 
  private:

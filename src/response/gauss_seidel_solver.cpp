@@ -321,7 +321,7 @@ void GaussSeidelSolver::finish(ContactStep& step, const Island& island) {
       }
       BodyContact& contact = step.body_contacts[linked_[i - hand_rows_.size()]];
       SpringContact row;
-      make_link_row(step, island, contact, row);
+      row.spring = spring_of(step, contact);
       patch.fill_response(step_, points_[i], motion, row);
       settle(step, row, contact);
     }

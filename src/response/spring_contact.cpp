@@ -160,11 +160,10 @@ void make_spring(const ContactStep& step, const Contact& contact, SpringContact&
 }
 
 // The stretch is that of the anchors; no state is kept along n. No pad and no torsion: the points of a
-// manifold share the load, and resist twist together. Body a moves too: its velocity is the solver's, not
-// `drive`.
-void make_spring(const ContactStep& step, const BodyContact& contact, SpringContact& result) {
+// manifold share the load, and resist twist together.
+Spring spring_of(const ContactStep& step, const BodyContact& contact) {
   const ContactConfiguration& configuration = step.configuration;
-  Spring& spring = result.spring;
+  Spring spring;
   spring.normal = triple(contact.normal);
   spring.stretch = triple(contact.stretch);
   spring.depth = contact.depth;
@@ -175,6 +174,12 @@ void make_spring(const ContactStep& step, const BodyContact& contact, SpringCont
   spring.twist = spring.twist_stiffness = spring.patch_friction = 0.0;
   spring.pad = spring.half_over_pad = spring.bond = 0.0;
   spring.yields = HandStrength::kUnlimited;
+  return spring;
+}
+
+// Body a moves too: its velocity is the solver's, not `drive`.
+void make_spring(const ContactStep& step, const BodyContact& contact, SpringContact& result) {
+  result.spring = spring_of(step, contact);
   result.arm_a = triple(contact.arm_a + contact.friction_offset);
   result.arm = triple(contact.arm_b + contact.friction_offset);
   result.tilt = triple(contact.normal.cross(contact.friction_offset));

@@ -181,6 +181,7 @@ inline void Spring::evaluate(const Triple& u, double spin, bool renew_limits, Sp
 /// stiffness.
 void make_spring(const ContactStep& step, const Contact& contact, SpringContact& result);
 void make_spring(const ContactStep& step, const BodyContact& contact, SpringContact& result);
+Spring spring_of(const ContactStep& step, const BodyContact& contact);
 
 /// Writes the solution of a contact back.
 void settle(const ContactStep& step, const SpringContact& solved, Contact& contact);
