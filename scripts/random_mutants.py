@@ -12,7 +12,7 @@ REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # Suites for each folder, those that are likely to notice first.
 SUITES = {
     "math": "regression math rendering simulation",
-    "text": "text scene training replay",
+    "text": "text regression scene training replay",
     "scene": "regression scene training simulation joints",
     "configuration": "scene simulation ros",
     "tracking": "regression tracking simulation rendering laws",
@@ -23,7 +23,7 @@ SUITES = {
     "simulation": "regression simulation laws synthetic replay",
     "rendering": "regression rendering simulation ros",
     "synthetic": "regression synthetic operators training",
-    "training": "training operators",
+    "training": "training regression operators",
     "ros": "ros wire nodes:interaction nodes:live_changes nodes:replay",
     "record": "replay ros",
     "replay": "replay regression",

@@ -176,7 +176,7 @@ std::string bits_of(const Pile& pile) {
 }
 
 /// A trial of a simulated operator.
-struct Trial {
+struct PlayedTrial {
   std::string task;
   std::uint64_t seed;
   double noise;
@@ -188,8 +188,8 @@ struct Trial {
   }
 };
 
-std::vector<Trial> trials() {
-  std::vector<Trial> all{{"cube", 5, 1.0}, {"rail", 1, 0.0}, {"throw", 2, 1.0}};
+std::vector<PlayedTrial> played_trials() {
+  std::vector<PlayedTrial> all{{"cube", 5, 1.0}, {"rail", 1, 0.0}, {"throw", 2, 1.0}};
   for (const char* task :
        {"long_cuboid", "catch", "dock", "hatch", "hatch_0g", "nudge_into_box", "slap", "tap"}) {
     all.push_back({task, 3, 1.0});
@@ -200,7 +200,7 @@ std::vector<Trial> trials() {
   return all;
 }
 
-std::string bits_of(const Trial& trial) {
+std::string bits_of(const PlayedTrial& trial) {
   const std::string file = "config/tasks/" + trial.task + ".yaml";
   const Task task = std::filesystem::exists(file) ? load_task(file) : testing::task_with(trial.task);
   const TrialMeasures measures =
@@ -255,7 +255,7 @@ TEST(Bits, are_those_that_were_reviewed) {
   const auto compare = [&](const auto& run) { bits.compare(run.name(), bits_of(run)); };
   for (const NoisyReplay& run : runs()) compare(run);
   for (const Pile& pile : kPiles) compare(pile);
-  for (const Trial& trial : trials()) compare(trial);
+  for (const PlayedTrial& trial : played_trials()) compare(trial);
   for (const LoadedScene& scene : loaded_scenes()) compare(scene);
   for (std::size_t kind = 0; kind < kKinds; ++kind) compare(Touching{kind});
   for (const RandomScene& run : kRandomScenes) compare(run);
