@@ -77,7 +77,7 @@ PatchPoint make_point(double step, const SpringContact& row, const Mobility6& mo
   const Vector3 lever = patch.axes * (from_origin.cross(vector(spring.normal)) + vector(row.tilt));
   point.place = patch.axes * from_origin;
   point.lever_u = lever.x(), point.lever_v = lever.y();
-  point.spring = spring;
+  point.spring = static_cast<const NormalSpring&>(spring);
   point.friction = spring.friction;
   point.bond = step * spring.bond;
   point.nonlinear = spring.pad > 0.0 || spring.yields < kMaxYield;

@@ -402,7 +402,9 @@ class WebTest(unittest.TestCase):
                 carried.append([place(hand.palm) - place(of(name, message).pose) for hand, name in zip(hands, ("ann", "ben"))])
         self.assertGreater(len(carried), 10)
         self.assertTrue(numpy.allclose(*carried[0], atol=1e-3), "in the frames of their operators the hands are the same")
-        self.assertTrue(numpy.allclose([ben for _, ben in carried], carried[0][1], atol=1e-3), "Ben's goes where he drifts")
+        off = [abs(ben - carried[0][1]).max() for _, ben in carried]
+        self.assertLess(max(off), 1e-3, "Ben's goes where he drifts, but message %d of %d: %s" % (
+            int(numpy.argmax(off)), len(off), carried[int(numpy.argmax(off))]))
         drifted = place(of("ben", states[-1]).pose) - place(of("ann", states[0]).pose)
         self.assertGreater(drifted[0], 0.1)
         self.assertAlmostEqual(drifted[1], 1.0, delta=1e-6)
