@@ -116,8 +116,8 @@ TEST(BoxAround, holds_all_shapes_of_a_body_and_no_more) {
   EXPECT_LE((box.max() - Vector3(0.11, 0.05, 0.06)).norm(), 1e-15);
 }
 
-// Those that a joint connects never touch either, but are not told: they may overlap.
-TEST(OverlapsInMechanisms, are_all_told) {
+// Except those that a joint connects, which may overlap.
+TEST(OverlapsInMechanisms, are_all_listed) {
   Scene scene;
   for (int i = 0; i < 4; ++i) {
     Body body = testing::box_body(Vector3::Constant(0.1), 0.1);

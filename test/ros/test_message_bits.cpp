@@ -10,7 +10,7 @@
 namespace mrhi {
 namespace {
 
-/// Adds what a message is on the wire. The stamp and the topic are in what is recorded of it.
+/// Adds the topic and the bytes of a message.
 void add(const rosbag::MessageInstance& message, Fnv1a& hash) {
   std::vector<std::uint8_t> bytes(message.size());
   ros::serialization::OStream stream(bytes.data(), message.size());
@@ -19,7 +19,7 @@ void add(const rosbag::MessageInstance& message, Fnv1a& hash) {
   hash.add(bytes.data(), bytes.size());
 }
 
-/// Bits of the markers of a scripted motion with a Leap's noise, and of all else that a node tells of it.
+/// Bits of the markers of a scripted motion with a Leap's noise, and of all other messages that a node publishes.
 std::string bits_of_messages(const std::string& motion, double gravity) {
   const test::Folder folder;
   std::vector<JointsFrame> frames = test::motion_frames(motion, 60.0, 0);

@@ -286,7 +286,7 @@ TEST_F(Tracker, joint_speed_limits_the_turn_of_bones_in_the_palm_and_keeps_them_
             1e-9);
 }
 
-// Two joints told in one place: the bone between them has no direction to turn from.
+// Two joints reported at one place: the bone between them has no direction to turn from.
 TEST_F(Tracker, a_bone_that_had_no_length_is_at_once_as_it_is_tracked) {
   configuration_.hand_joint_speed = 3.0;
   const int near = capsule_index(1, 1), far = capsule_index(1, 2);
