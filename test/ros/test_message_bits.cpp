@@ -19,7 +19,8 @@ void add(const rosbag::MessageInstance& message, Fnv1a& hash) {
   hash.add(bytes.data(), bytes.size());
 }
 
-/// Bits of the markers of a scripted motion with a Leap's noise, and of all other messages that a node publishes.
+/// Bits of the markers of a scripted motion with a Leap's noise, and of all other messages that a node
+/// publishes.
 std::string bits_of_messages(const std::string& motion, double gravity) {
   const test::Folder folder;
   std::vector<JointsFrame> frames = test::motion_frames(motion, 60.0, 0);
