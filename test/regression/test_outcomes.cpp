@@ -114,13 +114,7 @@ std::string bits_of_task(const std::string& name) {
 std::string bits_of_session() {
   const test::Folder folder;
   Outcomes outcomes(folder);
-  SessionHeader header;
-  header.participant = "P01";
-  header.group = "beginner";
-  header.handedness = "right";
-  header.condition = "hands";
-  header.started = "2024-05-06T10:00:00Z";
-  header.software = "0.1.0";
+  const SessionHeader header = test::header();
   const auto go_on = [&] {
     Session session(test::two_places(), header, 0, folder / "session", 0);
     return std::to_string(session.position()) + " of " + std::to_string(session.trials()) + ", " +

@@ -44,12 +44,6 @@ struct Eye {
 class TrainingMarkers : public ::testing::Test {
  protected:
   TrainingMarkers() {
-    header_.participant = "P01";
-    header_.group = "beginner";
-    header_.handedness = "right";
-    header_.condition = "implicit";
-    header_.started = "2024-05-06T10:00:00Z";
-    header_.software = "0.1.0";
     session_.emplace(test::shipped_task("pick_and_place"), header_, 0, folder_.path(), 0);
     status_.trial = status_.trials = 1;
     status_.object = "cube";
@@ -67,7 +61,7 @@ class TrainingMarkers : public ::testing::Test {
 
   const test::Folder folder_;
   const Body body_ = testing_body();
-  SessionHeader header_;
+  const SessionHeader header_ = test::header();
   std::optional<Session> session_;
   TrainingStatus status_;
   ObjectState object_;

@@ -24,17 +24,6 @@ Task three_objects() {
   return task;
 }
 
-SessionHeader header() {
-  SessionHeader header;
-  header.participant = "P01";
-  header.group = "beginner";
-  header.handedness = "right";
-  header.condition = "implicit";
-  header.started = "2024-05-06T10:00:00Z";
-  header.software = "0.1.0";
-  return header;
-}
-
 std::vector<std::string> lines(const std::string& file) {
   std::ifstream in(file);
   std::vector<std::string> all;
@@ -51,7 +40,7 @@ std::string text(const std::string& file) {
 
 class SessionTest : public ::testing::Test {
  protected:
-  Session open(const SessionHeader& who = header(), Nanoseconds now = 0) {
+  Session open(const SessionHeader& who = test::header(), Nanoseconds now = 0) {
     return Session(three_objects(), who, 0, path_, now);
   }
   /// Plays the running trial to its release, or only `seconds` of it.
@@ -216,7 +205,7 @@ TEST_F(SessionTest, goes_on_after_the_last_trial_that_has_ended) {
     session.begin(stamp_);
     play(session, 2.0);
   }
-  Session session = open(header(), 7'000'000'000'000);
+  Session session = open(test::header(), 7'000'000'000'000);
   EXPECT_TRUE(session.folder().resumed());
   EXPECT_EQ("flat", session.object().name);
   EXPECT_EQ(1u, session.position());
@@ -274,24 +263,24 @@ TEST_F(SessionTest, a_line_that_was_cut_off_anywhere_is_done_again) {
 TEST_F(SessionTest, refuses_the_folder_of_another_session_and_leaves_it_alone) {
   open();
   const std::string before = text(events_);
-  SessionHeader other = header();
+  SessionHeader other = test::header();
   other.participant = "P02";
   test::expect_words(refusal(other), {path_ + "/session.yaml", "participant", "'P01'", "'P02'"});
-  other = header();
+  other = test::header();
   const std::string whole = text(path_ + "/session.yaml");
   std::string without = whole;
   without.erase(without.find("\nseed:"),
                 without.find('\n', without.find("\nseed:") + 1) - without.find("\nseed:"));
   std::ofstream(path_ + "/session.yaml", std::ios::trunc) << without;
-  test::expect_words(refusal(header()), {"seed: the session in this folder has 'nothing'"});
+  test::expect_words(refusal(test::header()), {"seed: the session in this folder has 'nothing'"});
   std::ofstream(path_ + "/session.yaml", std::ios::trunc) << whole;
   other.condition = "seed";
   test::expect_words(refusal(other), {"condition", "'implicit'", "'seed'"});
-  other = header();
+  other = test::header();
   other.group = "veteran";
   test::expect_words(refusal(other), {"group", "'beginner'", "'veteran'"});
   EXPECT_EQ(before, text(events_));
-  other = header();
+  other = test::header();
   other.started = "2025-01-01T00:00:00Z";
   EXPECT_EQ("", refusal(other)) << "it has been started anew";
 }
@@ -302,17 +291,17 @@ TEST_F(SessionTest, refuses_a_header_that_is_none_or_has_another_order_or_gravit
   const std::size_t order = kept.find("order:");
   ASSERT_NE(order, std::string::npos);
   std::ofstream(file) << kept.substr(0, order) << "order: [flat, cube]\n";
-  test::expect_words(refusal(header()), {file, "order", "'[flat, cube]'"});
+  test::expect_words(refusal(test::header()), {file, "order", "'[flat, cube]'"});
   const std::string weightless = "gravity: [0, 0, 0]";
   std::string on_earth = kept;
   ASSERT_NE(kept.find(weightless), std::string::npos) << kept;
   on_earth.replace(kept.find(weightless), weightless.size(), "gravity: [0, 0, -9.81]");
   std::ofstream(file) << on_earth;
-  test::expect_words(refusal(header()), {file, "gravity", "[0, 0, -9.81]", "[0, 0, 0]"});
+  test::expect_words(refusal(test::header()), {file, "gravity", "[0, 0, -9.81]", "[0, 0, 0]"});
   std::ofstream(file) << "- participant\n";
-  test::expect_words(refusal(header()), {file, "is not a list of keys with values"});
+  test::expect_words(refusal(test::header()), {file, "is not a list of keys with values"});
   std::ofstream(file) << kept;
-  EXPECT_EQ("", refusal(header()));
+  EXPECT_EQ("", refusal(test::header()));
 }
 
 TEST_F(SessionTest, does_a_trial_again_whose_result_it_does_not_know) {
@@ -342,11 +331,11 @@ TEST_F(SessionTest, is_refused_while_another_program_has_its_folder_and_names_th
   }
   ASSERT_EQ(1, read(ready[0], &byte, 1));
   const std::string before = text(events_);
-  test::expect_words(refusal(header()), {path_, "in use by process " + std::to_string(child) + " on "});
+  test::expect_words(refusal(test::header()), {path_, "in use by process " + std::to_string(child) + " on "});
   EXPECT_EQ(before, text(events_));
   ASSERT_EQ(1, write(done[1], "d", 1));
   ASSERT_EQ(child, waitpid(child, nullptr, 0));
-  EXPECT_EQ("", refusal(header())) << "a lock ends with its program, however that ends";
+  EXPECT_EQ("", refusal(test::header())) << "a lock ends with its program, however that ends";
 }
 
 /// No file of the child may grow further, as on a disk that is full.
@@ -380,28 +369,28 @@ TEST_F(SessionTest, a_disk_that_is_full_is_told_and_what_is_in_the_files_stays) 
 
 TEST_F(SessionTest, a_folder_that_cannot_be_is_refused_in_one_line) {
   path_ = "/dev/null/P01";
-  test::expect_words(refusal(header()), {"/dev/null/P01", "cannot be made"});
+  test::expect_words(refusal(test::header()), {"/dev/null/P01", "cannot be made"});
   path_ = "/proc/P01";
-  EXPECT_NE("", refusal(header()));
+  EXPECT_NE("", refusal(test::header()));
 }
 
 TEST_F(SessionTest, refuses_what_must_not_be_in_a_header) {
-  SessionHeader bad = header();
+  SessionHeader bad = test::header();
   bad.group = "two words";
   test::expect_words(refusal(bad), {"group", "'two words'", "allowed: a name"});
-  bad = header();
+  bad = test::header();
   bad.handedness = "both";
   test::expect_words(refusal(bad), {"'both'", "right or left"});
-  bad = header();
+  bad = test::header();
   for (const std::string& name :
        {std::string("a,b"), std::string("../../x"), std::string("=1+1"), std::string("-1"), std::string("@a"),
         std::string("\x1b[2J"), std::string("a b"), std::string(65, 'a'), std::string("P\n1"),
         std::string()}) {
-    bad = header();
+    bad = test::header();
     bad.participant = name;
     test::expect_words(refusal(bad), {"participant", "64 letters, digits, '_' and '-'"});
     EXPECT_EQ(refusal(bad).find('\x1b'), std::string::npos);
-    bad = header();
+    bad = test::header();
     bad.condition = name;
     test::expect_words(refusal(bad), {"condition", "64 letters, digits, '_' and '-'"});
   }
@@ -411,11 +400,11 @@ TEST_F(SessionTest, refuses_what_must_not_be_in_a_header) {
 TEST_F(SessionTest, refuses_tables_with_other_columns_or_a_broken_line) {
   open();
   std::ofstream(trials_, std::ios::trunc) << "trial,object\n";
-  test::expect_words(refusal(header()), {"trials.csv:1", "columns"});
+  test::expect_words(refusal(test::header()), {"trials.csv:1", "columns"});
   std::filesystem::remove(trials_);
   open();
   std::ofstream(trials_, std::ios::app) << "1,cube\n";
-  test::expect_words(refusal(header()), {"trials.csv:2", "2 fields"});
+  test::expect_words(refusal(test::header()), {"trials.csv:2", "2 fields"});
 }
 
 /// All files below the folder, with what is in them.
@@ -432,7 +421,7 @@ TEST_F(SessionTest, refuses_a_folder_with_tables_of_others_and_touches_nothing_i
     for (const std::string foreign : {"day,weight\n1,70\n2,7", "day,weight", "trial,object\n"}) {
       std::ofstream(path_ + "/" + name) << foreign;
       const auto before = all_in(path_);
-      test::expect_words(refusal(header()), {name + ":1", "columns"});
+      test::expect_words(refusal(test::header()), {name + ":1", "columns"});
       EXPECT_EQ(before, all_in(path_)) << name;
     }
     std::filesystem::remove(path_ + "/" + name);
@@ -440,7 +429,7 @@ TEST_F(SessionTest, refuses_a_folder_with_tables_of_others_and_touches_nothing_i
   std::filesystem::create_directory(path_ + "/setup");
   std::ofstream(path_ + "/setup/mine") << "x";
   const auto before = all_in(path_);
-  test::expect_words(refusal(header()), {"/setup: is no session's"});
+  test::expect_words(refusal(test::header()), {"/setup: is no session's"});
   EXPECT_EQ(before, all_in(path_));
 }
 
@@ -450,16 +439,16 @@ TEST_F(SessionTest, refuses_pipes_and_devices_in_place_of_its_files) {
   for (const std::string name : {"trials.csv", "events.csv", "hands.csv", "session.lock", "session.yaml"}) {
     const std::string file = path_ + "/" + name;
     ASSERT_EQ(0, mkfifo(file.c_str(), 0600));
-    EXPECT_NE(refusal(header()).find(file), std::string::npos);
+    EXPECT_NE(refusal(test::header()).find(file), std::string::npos);
     std::filesystem::remove(file);
     std::filesystem::create_symlink("/dev/zero", file);
-    EXPECT_NE(refusal(header()).find(file), std::string::npos);
+    EXPECT_NE(refusal(test::header()).find(file), std::string::npos);
     std::filesystem::remove(file);
   }
   std::filesystem::create_directory(path_ + "/session.lock");
-  test::expect_words(refusal(header()), {path_ + "/session.lock", "cannot be written"});
+  test::expect_words(refusal(test::header()), {path_ + "/session.lock", "cannot be written"});
   std::filesystem::remove(path_ + "/session.lock");
-  EXPECT_EQ("", refusal(header()));
+  EXPECT_EQ("", refusal(test::header()));
 }
 
 /// Writing goes on without an error to a file that has no name any more.
@@ -503,7 +492,7 @@ TEST_F(SessionTest, orders_objects_by_the_latin_square_and_writes_it_down) {
   std::vector<std::string> firsts;
   for (std::uint64_t place = 0; place < 3; ++place) {
     const std::string path = folder_.path() + "/" + std::to_string(place);
-    Session session(task, header(), place, path, 0);
+    Session session(task, test::header(), place, path, 0);
     firsts.push_back(session.object().name);
     EXPECT_NE(std::string::npos, text(path + "/session.yaml").find("order: [" + firsts.back()));
   }
@@ -514,7 +503,7 @@ TEST_F(SessionTest, orders_objects_by_the_latin_square_and_writes_it_down) {
 TEST_F(SessionTest, repetitions_go_through_the_order_again) {
   Task task = three_objects();
   task.repetitions = 2;
-  Session session(task, header(), 0, path_, 0);
+  Session session(task, test::header(), 0, path_, 0);
   EXPECT_EQ(6u, session.trials());
   for (int i = 0; i < 3; ++i) session.skip(0);
   EXPECT_EQ("cube", session.object().name);
@@ -526,12 +515,12 @@ TEST_F(SessionTest, practice_is_a_repetition_before_the_first_and_is_not_done_tw
   Task task = three_objects();
   task.practice = true;
   {
-    Session session(task, header(), 0, path_, 0);
+    Session session(task, test::header(), 0, path_, 0);
     EXPECT_EQ(6u, session.trials());
     session.skip(0);
     EXPECT_EQ(0u, lines(trials_)[1].find("1,cube,implicit,0,skipped,"));
   }
-  Session session(task, header(), 0, path_, 0);
+  Session session(task, test::header(), 0, path_, 0);
   EXPECT_EQ(1u, session.position());
   for (int i = 0; i < 3; ++i) session.skip(0);
   EXPECT_EQ(0u, lines(trials_)[4].find("4,cube,implicit,1,skipped,"));

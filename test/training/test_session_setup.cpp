@@ -13,15 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SessionHeader header() {
-  SessionHeader header;
-  header.participant = "P01";
-  header.group = "beginner";
-  header.handedness = "right";
-  header.condition = "implicit";
-  return header;
-}
-
 const std::string kStl =
     "solid t\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0.1 0\nvertex 0.1 0 "
     "0\nendloop\nendfacet\n"
@@ -41,7 +32,7 @@ class SessionSetupTest : public ::testing::Test {
   SessionSetup setup(const std::string& version = "0.1.0") const {
     return session_setup(folder_.path() + "/task.yaml", task_, configuration_, {}, {}, version);
   }
-  void open(const SessionSetup& setup) const { Session(task_, header(), 0, session_, 0, setup); }
+  void open(const SessionSetup& setup) const { Session(task_, test::header(), 0, session_, 0, setup); }
   std::string refusal(const SessionSetup& setup) const {
     try {
       open(setup);
@@ -163,7 +154,7 @@ TEST_F(SessionSetupTest, refused_sessions_are_left_as_they_were) {
 
 TEST_F(SessionSetupTest, a_second_session_has_a_folder_of_its_own) {
   open(setup());
-  SessionHeader second = header();
+  SessionHeader second = test::header();
   second.session = 2;
   try {
     Session(task_, second, 0, session_, 0, setup());

@@ -5,12 +5,25 @@
 #include <string>
 #include <vector>
 
+#include "mr_hand_interaction/training/session.h"
 #include "mr_hand_interaction/training/trial.h"
 
 namespace mrhi::test {
 
 inline Task shipped_task(const std::string& name) {
   return load_task("config/tasks/" + name + ".yaml");
+}
+
+/// Of a participant whom nothing distinguishes.
+inline SessionHeader header() {
+  SessionHeader header;
+  header.participant = "P01";
+  header.group = "beginner";
+  header.handedness = "right";
+  header.condition = "implicit";
+  header.started = "2024-05-06T10:00:00Z";
+  header.software = "0.1.0";
+  return header;
 }
 
 inline Goal pick() {
