@@ -224,7 +224,8 @@ Rejection Simulation::begin(const HandFrame& frame, const std::optional<Nanoseco
   if (to_seconds(frame.stamp - s.state.last_frame) > hold_time) s.pass_without_frames(frame.stamp, hold_time);
   s.lose_hands(frame.stamp, hold_time);
   const double elapsed = to_seconds(frame.stamp - s.state.last_frame);
-  track_hands(frame, elapsed, s.configuration, s.state.hands, s.result.events);
+  const auto people = static_cast<std::uint32_t>(std::max<std::size_t>(s.scene.operators.size(), 1));
+  track_hands(frame, elapsed, people, s.configuration, s.state.hands, s.result.events);
   s.lose_hands_that_are_not_finite(frame.stamp);
   s.state.last_frame = frame.stamp;
   s.plan(s.state.time, frame.stamp);

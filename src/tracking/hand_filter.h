@@ -71,9 +71,11 @@ double filter_noise(const SeenNoise& seen);
 
 /// Assigns the frame's hands to tracks (by id; a new id on the same side, near a hand that is held, continues
 /// it), filters them, holds those that are missing, and reports hand_found. Call lose_unseen_hands first.
-/// `elapsed`: since the frame before [s]. `hands` has kMaxHands slots; further hands are left out.
-void track_hands(const HandFrame& frame, double elapsed, const Configuration& configuration,
-                 std::vector<HandTrack>& hands, std::vector<Event>& events);
+/// `elapsed`: since the frame before [s]. `people`, at least 1: hands whose ids differ modulo this are of
+/// different people, and do not continue each other. `hands` has kMaxHands slots; further hands are left out.
+void track_hands(const HandFrame& frame, double elapsed, std::uint32_t people,
+                 const Configuration& configuration, std::vector<HandTrack>& hands,
+                 std::vector<Event>& events);
 
 /// Changes the filter at `now`. Positions and velocities stay continuous; the change takes 0.2 s.
 void change_filter(const FilterConfiguration& from, Nanoseconds now, std::vector<HandTrack>& hands);

@@ -205,14 +205,19 @@ constexpr bool (*kCriteria[])(const HandTrack&, const Hand&) = {
 
 /// Applies each criterion to all slots before the next. Slots and hands are tried in order, so that equal
 /// frames give equal tracks.
-Assignment assign_hands(const std::vector<Hand>& seen, const std::vector<HandTrack>& hands) {
+Assignment assign_hands(const std::vector<Hand>& seen, std::uint32_t people,
+                        const std::vector<HandTrack>& hands) {
+  const auto of_one_person = [people](const HandTrack& track, const Hand& hand) {
+    return !track.active || track.current.id % people == hand.id % people;
+  };
   Assignment assignment;
   assignment.fill(-1);
   for (const auto fits : kCriteria)
     for (std::size_t slot = 0; slot < hands.size(); ++slot)
       for (int i = 0; i < static_cast<int>(seen.size()) && assignment[slot] < 0; ++i) {
         const bool assigned = std::find(assignment.begin(), assignment.end(), i) != assignment.end();
-        if (!assigned && fits(hands[slot], seen[i])) assignment[slot] = i;
+        if (!assigned && of_one_person(hands[slot], seen[i]) && fits(hands[slot], seen[i]))
+          assignment[slot] = i;
       }
   return assignment;
 }
@@ -371,9 +376,10 @@ void hold(Nanoseconds stamp, double elapsed, HandTrack& track) {
 
 }  // namespace
 
-void track_hands(const HandFrame& frame, double elapsed, const Configuration& configuration,
-                 std::vector<HandTrack>& hands, std::vector<Event>& events) {
-  const Assignment assignment = assign_hands(frame.hands, hands);
+void track_hands(const HandFrame& frame, double elapsed, std::uint32_t people,
+                 const Configuration& configuration, std::vector<HandTrack>& hands,
+                 std::vector<Event>& events) {
+  const Assignment assignment = assign_hands(frame.hands, people, hands);
   for (std::size_t slot = 0; slot < hands.size(); ++slot) {
     HandTrack& track = hands[slot];
     if (assignment[slot] < 0) {

@@ -84,6 +84,9 @@ TEST_F(OperatorScene, is_saved_as_it_is_and_keeps_its_parts_when_a_body_goes) {
   EXPECT_LT((before.tethers[0].at - after.tethers[0].at).norm(), 1e-12);
   EXPECT_LT((before.tethers[0].anchor - after.tethers[0].anchor).norm(), 1e-12);
 
+  save_scene(load("operators: {ann: {}}"), folder_.path() + "/one.urdf");
+  EXPECT_EQ(person(load_scene(folder_.path() + "/one.urdf", {})).name, "ann");
+
   LiveSimulation live(after, Configuration());
   live.remove("thing");
   const Scene& less = live.simulation().scene();
@@ -162,7 +165,6 @@ TEST_F(OperatorScene, is_held_by_its_restraint_within_reach_and_let_go_again) {
   EXPECT_THROW(without.restrain(true), std::invalid_argument);
 }
 
-/// The hand with id 5 is of the second of two operators: 5 modulo 2.
 TEST_F(OperatorScene, is_off_course_once_its_motion_changes_within_a_frame) {
   constexpr double kFrame = 0.008;
   const Scene scene = load("operator: {}");
@@ -177,6 +179,7 @@ TEST_F(OperatorScene, is_off_course_once_its_motion_changes_within_a_frame) {
   EXPECT_FALSE(operators.begin_step(0.5 * kFrame, state));
 }
 
+/// The hand with id 5 is of the second of two operators: 5 modulo 2.
 TEST_F(OperatorScene, hands_are_tracked_in_the_frames_of_their_own_operators) {
   Simulation simulation(load("operators: {ann: {}, ben: {start: [1, 0, 0, 0, 0, 1.570796326794897]}}"),
                         Configuration());
@@ -190,6 +193,22 @@ TEST_F(OperatorScene, hands_are_tracked_in_the_frames_of_their_own_operators) {
   };
   EXPECT_LT((seen(0) - tip).norm(), 1e-12);
   EXPECT_LT((seen(1) - Vector3(1.0 - 0.2, 0.1, 0.3)).norm(), 1e-12);
+}
+
+// In their own frames the hands are 0.1 m apart, and Ann's is missing when Ben's appears.
+TEST_F(OperatorScene, a_hand_that_appears_is_not_that_of_another_operator_who_holds_it_there) {
+  Simulation simulation(load("operators: {ann: {}, ben: {start: [0, 1, 0]}}"), Configuration());
+  for (const std::uint32_t id : {4u, 5u}) {
+    const Vector3 tip(id == 4 ? 0.2 : 0.1, 0, 0);
+    HandFrame frame{at(id / 60.0), {testing::finger(tip, tip, 0.008)}};
+    frame.hands[0].id = id;
+    simulation.advance(frame);
+  }
+  const std::vector<Hand>& tracked = simulation.result().tracked;
+  ASSERT_EQ(tracked.size(), 2u);
+  EXPECT_EQ(tracked[0].id, 4u);
+  const Vector3 bens = tracked[1].capsules[capsule_index(1, 3)].start;
+  EXPECT_LT((bens - Vector3(0.1, 1, 0)).norm(), 1e-12) << bens.transpose();
 }
 
 }  // namespace

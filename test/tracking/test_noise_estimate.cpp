@@ -212,7 +212,7 @@ class TwoTrackers : public ::testing::Test {
         frame.hands.push_back(in_world(joints));
       }
       lose_unseen_hands(stamp, configuration_.tracking.hold_time, hands_, events_);
-      track_hands(frame, 1.0 / kRate, configuration_, hands_, events_);
+      track_hands(frame, 1.0 / kRate, 1, configuration_, hands_, events_);
     }
   }
   void others_come() { ids_ += 2; }

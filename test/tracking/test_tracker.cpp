@@ -20,7 +20,7 @@ class Tracker : public ::testing::Test {
   void frame(double t, std::vector<Hand> seen) {
     events_.clear();
     lose_unseen_hands(at(t), configuration_.tracking.hold_time, hands_, events_);
-    track_hands({at(t), std::move(seen)}, t - last_, configuration_, hands_, events_);
+    track_hands({at(t), std::move(seen)}, t - last_, people_, configuration_, hands_, events_);
     last_ = t;
   }
   int active() const {
@@ -35,6 +35,7 @@ class Tracker : public ::testing::Test {
   std::vector<HandTrack> hands_ = std::vector<HandTrack>(kMaxHands);
   std::vector<Event> events_;
   double last_ = -0.01;  // stamp of the frame before [s]
+  std::uint32_t people_ = 1;
 };
 
 TEST_F(Tracker, a_new_hand_is_found_once) {
@@ -209,6 +210,21 @@ TEST_F(Tracker, a_new_id_within_30_cm_of_a_held_hand_is_that_hand_and_farther_of
     frame(0.10, {hand_at(way, 8)});
     EXPECT_EQ(active(), way < 0.3 ? 1 : 2) << way;
   }
+}
+
+// In the frames of operators, hands of two people may be in one place.
+TEST_F(Tracker, a_hand_never_continues_that_of_another_person) {
+  people_ = 2;
+  frame(0.00, {hand_at(0.1, 4)});
+  frame(0.05, {hand_at(0.1, 5)});
+  ASSERT_EQ(events_.size(), 1u);
+  EXPECT_EQ(events_[0].kind, EventKind::hand_found);
+  EXPECT_EQ(active(), 2);
+  EXPECT_TRUE(hands_[0].held);
+  EXPECT_EQ(hands_[0].current.id, 4u);
+  frame(0.10, {hand_at(0.1, 6), hand_at(0.1, 5)});
+  EXPECT_TRUE(events_.empty());
+  EXPECT_EQ(hands_[0].current.id, 6u);
 }
 
 TEST_F(Tracker, two_hands_keep_their_tracks_when_the_message_swaps_them) {
