@@ -152,6 +152,10 @@ Scene block_of_50() {
   return crowds::block(50).scene;
 }
 
+Scene block_of_216_without_gaps() {
+  return crowds::block(216, 0.0).scene;
+}
+
 Scene far_spinning_200() {
   return crowds::far_spinning(200).scene;
 }
@@ -171,7 +175,9 @@ const Plan kPlans[] = {
     {"heap_of_12", heap_of_12, none, 0.001, 0.0, false, true, 0.5},
     {"heap_of_50_settling", heap_of_50, none, 0.001, 0.84, false, true, 0.05},  // its dearest steps
     {"push_of_20", pushed_blocks, pushing, 0.001, 0.6, false, true, 0.1},
+    {"push_of_20_held", pushed_blocks, pushing, 0.001, 2.3, false, true, 0.05},  // the hand stands still
     {"block_of_50_awake", block_of_50, none, 0.001, 0.1, false, false, 0.1},
+    {"block_of_216_without_gaps", block_of_216_without_gaps, none, 0.001, 0.05, false, false, 0.01},
     {"far_spinning_200", far_spinning_200, none, 0.001, 0.0, false, true, 0.1},
     {"pinch_120_hz_frame", pinch, swinging, kTrackerFrame, 0.6, true, true},
     {"two_hands_six_objects_120_hz_frame", two_pinches, two_swinging, kTrackerFrame, 0.6, true, true},

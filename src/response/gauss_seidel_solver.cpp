@@ -64,8 +64,7 @@ void GaussSeidelSolver::begin(const ContactStep& step, const Island& island,
       if (!step.contacts[i].ignored) add_patch(row++, 1, &last_forces[step.body_contacts.size() + i]);
     }
   }
-  const Vector3 none = Vector3::Zero();
-  while (row < hand_rows_.data() + hand_rows_.size()) add_patch(row++, 1, &none);  // grips
+  while (row < hand_rows_.data() + hand_rows_.size()) add_patch(row++, 1, nullptr);  // grips
   add_links(step, island);
 }
 
@@ -95,7 +94,7 @@ void GaussSeidelSolver::add_links(const ContactStep& step, const Island& island)
     }
   }
   checked_.clear();
-  min_missing_speed_ = 0.0;
+  min_missing_speed_ = -kMaxSpeed;
   admit_closing(step);
 }
 
@@ -108,12 +107,14 @@ void GaussSeidelSolver::add_link(const ContactStep& step, const Range& range) {
   add_patch(link_rows_.data(), static_cast<int>(link_rows_.size()), &(*last_forces_)[range.first]);
 }
 
-/// Adds the patch of the rows, with the last step's forces as warm start.
+/// Adds the patch of the rows, with the last step's forces as warm start. `forces`: not used for a grip.
 void GaussSeidelSolver::add_patch(const SpringContact* rows, int count, const Vector3* forces) {
   patches_.push_back(make_patch(step_, rows, count, bodies_, points_));
   const ContactPatch& patch = patches_.back();
+  PatchPoint* point = &points_[patch.first];
+  if (patch.grips) return patch.start_grip(*point, body(patch.b));
   for (int i = 0; i < count; ++i)
-    patch.start_from(forces[i], step_, points_[patch.first + i], body(patch.a), body(patch.b));
+    patch.start_from(forces[i], rows[i].spring, step_, point[i], body(patch.a), body(patch.b));
 }
 
 /// Returns the closing speed that the surfaces lack for a force [m/s].
@@ -148,16 +149,18 @@ double GaussSeidelSolver::max_speed_gain() const {
 }
 
 /// Adds open contacts that now have a force; returns true if there are any. They stay for the rest of the
-/// step: one without a force costs little.
+/// step: one without a force costs little. Those whose surfaces close more slowly than convergence is judged
+/// stay open: in a block of 1000 cubes without gaps, some of 8000 did so in each sweep.
 bool GaussSeidelSolver::admit_closing(const ContactStep& step) {
-  if (open_.empty() || max_speed_gain() < min_missing_speed_) return false;
+  const double negligible = kConvergedAtRest * max_change(free_);
+  if (open_.empty() || max_speed_gain() < min_missing_speed_ + negligible) return false;
   checked_.clear();
   for (const PatchBody& body : bodies_) checked_.push_back(body.motion);
   min_missing_speed_ = kMaxSpeed;
   const std::size_t before = points_.size();
   const auto kept = std::remove_if(open_.begin(), open_.end(), [&](const Range& range) {
     const double missing_speeds = missing_speed(step, range);
-    if (missing_speeds < 0.0) {
+    if (missing_speeds < -negligible) {
       add_link(step, range);
       return true;
     }
@@ -248,6 +251,14 @@ int GaussSeidelSolver::height() {
   return highest;
 }
 
+/// Largest change of a body's velocity since `then` [m/s].
+double GaussSeidelSolver::max_change(const std::vector<Motion6>& then) const {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    largest = std::max(largest, (bodies_[i].motion - then[i]).head<3>().squaredNorm());
+  return std::sqrt(largest);
+}
+
 double GaussSeidelSolver::max_speed() const {
   double largest = 0.0;
   for (const PatchBody& body : bodies_) largest = std::max(largest, body.motion.head<3>().squaredNorm());
@@ -261,13 +272,6 @@ void GaussSeidelSolver::solve(const ContactStep& step) {
   impulse_directions_.assign(points_.size(), PatchImpulses::Zero());
   motions_before_.resize(bodies_.size());
   motion_directions_.assign(bodies_.size(), Motion6::Zero());
-  // Largest change of a body's velocity since `then` [m/s].
-  const auto max_change = [this](const std::vector<Motion6>& then) {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < free_.size(); ++i)
-      largest = std::max(largest, (bodies_[i].motion - then[i]).head<3>().squaredNorm());
-    return std::sqrt(largest);
-  };
   const auto points = static_cast<int>(points_.size()), bodies = static_cast<int>(free_.size());
   int stack = height();
   int min_sweeps = std::max(kMinSweeps, stack * stack / std::max(1, bodies));

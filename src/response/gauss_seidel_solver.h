@@ -38,6 +38,7 @@ class GaussSeidelSolver {
 
   double max_mass_ratio() const;
   int height();
+  double max_change(const std::vector<Motion6>& then) const;
   double max_speed() const;
   double missing_speed(const ContactStep& step, const Range& range) const;
   double max_speed_gain() const;
