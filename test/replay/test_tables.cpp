@@ -106,6 +106,27 @@ TEST(ResultWriter, hands_have_the_phalanges_that_exist_tracked_and_rendered) {
   EXPECT_EQ(lines[4], "0,1,1,5,0,1,0,0,0,0,0,0.03,0.0125,0,0");
 }
 
+TEST(ResultWriter, palms_say_which_hands_their_tracker_does_not_see) {
+  Written written;
+  for (const std::uint32_t id : {4u, 5u}) {
+    Hand hand = testing::finger({0, 0, 0}, {0.02, 0, 0}, 0.009);
+    hand.id = id;
+    written.result.tracked.push_back(hand);
+    HandTrack& track = written.state.hands[id - 3];
+    track.active = true;
+    track.held = id == 5;
+    track.current = hand;
+  }
+  written.state.hands[0].held = true;  // an old track of the first
+  written.state.hands[0].current.id = 4;
+  written.write(0, 1);
+  const auto lines = written.lines("palms.csv");
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_EQ(lines[0], "time,hand_id,side,px,py,pz,qx,qy,qz,qw,confidence,lost,frame");
+  EXPECT_EQ(lines[1].substr(lines[1].rfind(',', lines[1].rfind(',') - 1)), ",0,0");
+  EXPECT_EQ(lines[2].substr(lines[2].rfind(',', lines[2].rfind(',') - 1)), ",1,0");
+}
+
 TEST(ResultWriter, events_have_names_and_the_time_at_which_they_happened) {
   Written written;
   written.result.events = {{1'000'000'000, EventKind::hand_found, -1, 7},

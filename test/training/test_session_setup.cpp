@@ -172,8 +172,15 @@ TEST_F(SessionSetupTest, an_object_of_the_user_s_own_mesh_can_be_spawned) {
       "thing.urdf",
       test::thing(test::kInertial +
                   std::string(R"(<collision><geometry><mesh filename="part.stl"/></geometry></collision>)")));
-  const ObjectModel model = load_object({"thing", urdf, {}, {}}, {}, {}, {});
-  EXPECT_EQ(1u, requested_body(model.request, {}).shapes.size());
+  const Pose start{Vector3(0.1, 0.2, 0.3), Quaternion(0, 0, 0, 1)};
+  const Twist twist{Vector3(0.5, 0, 0), Vector3(0, 1, 0)};
+  const ObjectModel model = load_object({"thing", urdf, start, twist}, {}, {}, {});
+  const Body body = requested_body(model.request, {});
+  EXPECT_EQ(1u, body.shapes.size());
+  EXPECT_LT((body.start.position - start.position).norm(), 1e-12);
+  EXPECT_LT(body.start.orientation.angularDistance(start.orientation), 1e-9);
+  EXPECT_EQ(body.start_twist.linear, twist.linear);
+  EXPECT_EQ(body.start_twist.angular, twist.angular);
 }
 
 TEST_F(SessionSetupTest, the_mesh_files_are_known_by_their_hashes) {
