@@ -78,6 +78,7 @@ PatchPoint make_point(double step, const SpringContact& row, const Mobility6& mo
   point.place = patch.axes * from_origin;
   point.lever_u = lever.x(), point.lever_v = lever.y();
   point.spring = static_cast<const NormalSpring&>(spring);
+  point.closing = spring.depth / spring.ahead;
   point.friction = spring.friction;
   point.bond = step * spring.bond;
   point.nonlinear = spring.pad > 0.0 || spring.yields < kMaxYield;
@@ -277,8 +278,7 @@ void ContactPatch::relax(double step, PatchPoint* points, const Spring* twisted,
   bool open = true;
   for (int i = 0; i < count; ++i) {
     const PatchPoint& point = points[i];
-    missing_speeds[i] = point.spring.depth / point.spring.ahead - point.rate(motion) -
-                        point.compliance * point.impulses[kNormal];
+    missing_speeds[i] = point.closing - point.rate(motion) - point.compliance * point.impulses[kNormal];
     open = open && missing_speeds[i] <= 0.0 && point.impulses[kNormal] == 0.0;
   }
   if (open) return true;
@@ -301,9 +301,7 @@ void ContactPatch::relax(double step, PatchPoint* points, const Spring* twisted,
   for (int i = 0; i < count; ++i) {
     const PatchPoint& point = points[i];
     const double normal = point.impulses[kNormal] + more[i];
-    if (normal > 0.0 &&
-        (point.spring.depth / point.spring.ahead - point.compliance * normal) * point.spring.fade >
-            kMinFade) {
+    if (normal > 0.0 && (point.closing - point.compliance * normal) * point.spring.fade > kMinFade) {
       ++separations;
       return false;
     }

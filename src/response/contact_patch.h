@@ -30,6 +30,7 @@ struct PatchPoint {
   double lever_u, lever_v;                  // r x n, the lever arm of the normal impulse about the origin [m]
   double normal_mobility;                   // change of the rate by a unit impulse along n [1/kg]
   NormalSpring spring;
+  double closing;           // depth / e: the rate at which the depth is 0 after e [m/s]
   double compliance;        // 1 / (k e), along n [1/kg]
   double soft_stiffness;    // times the step, reduced by the bodies' mobility [N s/m]
   double kept, damping;     // factors of the last friction impulse and of the sliding in the next one

@@ -95,7 +95,7 @@ void GaussSeidelSolver::add_links(const ContactStep& step, const Island& island)
   }
   checked_.clear();
   min_missing_speed_ = -kMaxSpeed;
-  admit_closing(step);
+  admit_closing(step, max_change(free_));
 }
 
 void GaussSeidelSolver::add_link(const ContactStep& step, const Range& range) {
@@ -149,10 +149,11 @@ double GaussSeidelSolver::max_speed_gain() const {
 }
 
 /// Adds open contacts that now have a force; returns true if there are any. They stay for the rest of the
-/// step: one without a force costs little. Those whose surfaces close more slowly than convergence is judged
-/// stay open: in a block of 1000 cubes without gaps, some of 8000 did so in each sweep.
-bool GaussSeidelSolver::admit_closing(const ContactStep& step) {
-  const double negligible = kConvergedAtRest * max_change(free_);
+/// step: one without a force costs little. `given`: largest change of a body's velocity by contacts. Those
+/// whose surfaces close more slowly than convergence is judged stay open: in a block of 1000 cubes without
+/// gaps, some of 8000 did so in each sweep.
+bool GaussSeidelSolver::admit_closing(const ContactStep& step, double given) {
+  const double negligible = kConvergedAtRest * given;
   if (open_.empty() || max_speed_gain() < min_missing_speed_ + negligible) return false;
   checked_.clear();
   for (const PatchBody& body : bodies_) checked_.push_back(body.motion);
@@ -287,9 +288,9 @@ void GaussSeidelSolver::solve(const ContactStep& step) {
     if (i > 1) last = accelerate(last);
     sweep();
     const bool rests = max_speed() < fall;
-    const bool converged =
-        max_change(motions_before_) <= (rests ? kConvergedAtRest : kConverged) * max_change(free_);
-    if (admit_closing(step)) {
+    const double given = max_change(free_);
+    const bool converged = max_change(motions_before_) <= (rests ? kConvergedAtRest : kConverged) * given;
+    if (admit_closing(step, given)) {
       stack = height();
     } else if (converged) {
       break;

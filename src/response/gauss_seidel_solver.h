@@ -42,7 +42,7 @@ class GaussSeidelSolver {
   double max_speed() const;
   double missing_speed(const ContactStep& step, const Range& range) const;
   double max_speed_gain() const;
-  bool admit_closing(const ContactStep& step);
+  bool admit_closing(const ContactStep& step, double given);
   void sweep();
   double accelerate(double last);
   PatchBody& body(int number) { return bodies_[number]; }
