@@ -224,9 +224,15 @@ ContactPatch make_patch(double step, const SpringContact* rows, int count,
 
 void ContactPatch::start_from(const Vector3& force, const Spring& spring, double step, PatchPoint& point,
                               PatchBody& of_a, PatchBody& of_b) const {
-  if (force == Vector3::Zero()) return;
-  const Vector3 last = step * (axes * force);
-  point.impulses << last.x(), last.y(), std::max(0.0, -last.z()), 0.0;
+  if (grips) {
+    Vector3 pull = point.stretch_impulse / (1.0 - point.kept);  // at rest t' = kept t + stretch_impulse is t
+    limit_friction(point.bond, pull);
+    point.impulses << pull.x(), pull.y(), -pull.z(), 0.0;
+  } else {
+    if (force == Vector3::Zero()) return;
+    const Vector3 last = step * (axes * force);
+    point.impulses << last.x(), last.y(), std::max(0.0, -last.z()), 0.0;
+  }
   if (twists) {
     const double limit = spring.patch_friction * point.impulses[kNormal];
     point.impulses[kTwist] = std::max(-limit, std::min(step * spring.twist_stiffness * spring.twist, limit));
@@ -234,17 +240,6 @@ void ContactPatch::start_from(const Vector3& force, const Spring& spring, double
   Motion6 impulse = Motion6::Zero();
   point.add_impulses(impulse);
   apply(impulse, of_a, of_b);
-}
-
-// At rest t' = kept t + stretch_impulse is t.
-void ContactPatch::start_grip(PatchPoint& point, PatchBody& of_b) const {
-  Vector3 pull = point.stretch_impulse / (1.0 - point.kept);
-  limit_friction(point.bond, pull);
-  point.impulses << pull.x(), pull.y(), -pull.z(), 0.0;
-  Motion6 impulse = Motion6::Zero();
-  point.add_impulses(impulse);
-  PatchBody hand{Motion6::Zero(), 0.0, Matrix3::Zero()};
-  apply(impulse, hand, of_b);
 }
 
 // Contact by contact if the normal impulses cannot be solved together.

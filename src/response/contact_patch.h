@@ -67,11 +67,9 @@ struct ContactPatch {
   /// Changes the motions of the bodies by impulses on b.
   void apply(const Motion6& impulse, PatchBody& a, PatchBody& b) const;
   /// Sets the impulses of a point to those of a force in world axes [N]: f = t - p n, p cut off at 0. If it
-  /// twists, to the torque of its spring too.
+  /// twists, to the torque of its spring too; those of a grip to its stretch alone.
   void start_from(const Vector3& force, const Spring& spring, double step, PatchPoint& point, PatchBody& a,
                   PatchBody& b) const;
-  /// Sets the impulses of a grip's point to those of its stretch.
-  void start_grip(PatchPoint& point, PatchBody& b) const;
   /// Solves the patch with all others fixed: changes the relative motion, and adds to the impulse that
   /// apply() then gives to the bodies. `points`: its first. `twisted`: the spring of its point if it twists.
   void relax(double step, PatchPoint* points, const Spring* twisted, Motion6& motion, Motion6& impulse);

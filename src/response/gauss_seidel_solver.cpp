@@ -64,7 +64,8 @@ void GaussSeidelSolver::begin(const ContactStep& step, const Island& island,
       if (!step.contacts[i].ignored) add_patch(row++, 1, &last_forces[step.body_contacts.size() + i]);
     }
   }
-  while (row < hand_rows_.data() + hand_rows_.size()) add_patch(row++, 1, nullptr);  // grips
+  const Vector3 none = Vector3::Zero();
+  while (row < hand_rows_.data() + hand_rows_.size()) add_patch(row++, 1, &none);  // grips
   add_links(step, island);
 }
 
@@ -107,14 +108,13 @@ void GaussSeidelSolver::add_link(const ContactStep& step, const Range& range) {
   add_patch(link_rows_.data(), static_cast<int>(link_rows_.size()), &(*last_forces_)[range.first]);
 }
 
-/// Adds the patch of the rows, with the last step's forces as warm start. `forces`: not used for a grip.
+/// Adds the patch of the rows, with the last step's forces as warm start.
 void GaussSeidelSolver::add_patch(const SpringContact* rows, int count, const Vector3* forces) {
   patches_.push_back(make_patch(step_, rows, count, bodies_, points_));
   const ContactPatch& patch = patches_.back();
-  PatchPoint* point = &points_[patch.first];
-  if (patch.grips) return patch.start_grip(*point, body(patch.b));
   for (int i = 0; i < count; ++i)
-    patch.start_from(forces[i], rows[i].spring, step_, point[i], body(patch.a), body(patch.b));
+    patch.start_from(forces[i], rows[i].spring, step_, points_[patch.first + i], body(patch.a),
+                     body(patch.b));
 }
 
 /// Returns the closing speed that the surfaces lack for a force [m/s].

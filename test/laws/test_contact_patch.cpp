@@ -58,7 +58,7 @@ TEST(ContactPatch, of_a_grip_starts_from_its_stretch_up_to_its_bond) {
   for (const double bond : {5.0, 0.5}) {
     row.spring.bond = bond;
     const double change = change_at_rest(row, [&](const auto& patch, auto& point, auto& bodies) {
-      patch.start_grip(point, bodies[0]);
+      patch.start_from(Vector3::Zero(), row.spring, kStep, point, bodies[1], bodies[0]);
       const Vector3 stretched = kPatchStiffness * Vector3(4e-4, 3e-4, -2e-4);
       const Vector3 force = point.impulse().x() * patch.axes.row(0) +
                             point.impulse().y() * patch.axes.row(1) + point.impulse().z() * patch.axes.row(2);
