@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from xmlrpc.client import ServerProxy
 
 import rosbag
 import rosgraph
@@ -33,9 +34,13 @@ ixz="0" iyz="0"/></inertial><collision><geometry><mesh filename="package://mr_ha
 scale="1 1 1"/></geometry></collision></link></robot>"""
 
 
-def subscribed(node, topic):
-    subscribers = rosgraph.Master("/replay_test").getSystemState()[1]
-    return any(name == topic and node in nodes for name, nodes in subscribers)
+def recorded_topics():
+    """Of interaction_node, those whose messages the recorder gets by now."""
+    master = rosgraph.Master("/replay_test")
+    if not any("/interaction_node" in nodes for _, nodes in master.getSystemState()[0]):
+        return []
+    _, _, connections = ServerProxy(master.lookupNode("/interaction_node")).getBusInfo("/replay_test")
+    return [topic for _, peer, _, _, topic, *_ in connections if peer == "/rosbag_record"]
 
 
 def told_by_the_node(bag):
@@ -84,7 +89,10 @@ class ReplayTest(unittest.TestCase):
         return Launch("record.launch", "bag:=" + self.bag)
 
     def wait_for_recorder(self):
-        wait_until(lambda: subscribed("/rosbag_record", "/simulation_input"), "rosbag record")
+        """It connects to one topic after the other: an event before this may be in its inputs alone."""
+        wait_until(lambda: {"/simulation_input", "/interaction_events", "/diagnostics"}.issubset(recorded_topics()),
+                   "rosbag record")
+        self.recorded_since = rospy.get_time()
 
     def wait_for_inputs(self, more=CHANGES_APART):
         end = self.taken + more
@@ -121,14 +129,22 @@ class ReplayTest(unittest.TestCase):
         self.assertGreater(live["compared"], 100)
         with rosbag.Bag(bag) as recorded:
             told = {number: what for number, what in told_by_the_node(recorded).items() if number in hashes}
-            events = [event.kind for _, event, _ in recorded.read_messages(["/interaction_events"])]
+            live_events = [(event.header.stamp.to_sec(), event.kind)
+                           for _, event, _ in recorded.read_messages(["/interaction_events"])]
+            first_frame = next(message.header.stamp.to_sec() for _, message, _ in recorded.read_messages(["/simulation_input"])
+                               if message.kind == SimulationInput.FRAME)
         self.assertGreater(len(told), 0)
         for number, (stamp, state_hash) in told.items():
             self.assertEqual(hashes[number], (stamp, state_hash), "input %d" % number)
         with open(output + "/events.csv") as file:
-            kinds = [getattr(InteractionEvent, row["kind"]) for row in csv.DictReader(file)]
-        for kind in (InteractionEvent.GRASP_BEGIN, InteractionEvent.GRASP_END):
-            self.assertEqual(kinds.count(kind), events.count(kind))
+            events = [(first_frame + float(row["time"]), getattr(InteractionEvent, row["kind"]))
+                      for row in csv.DictReader(file)]
+        until = 1e-9 * max(stamp for stamp, _ in told.values())
+
+        def grasps(events):
+            return [kind for time, kind in events if self.recorded_since < time < until and
+                    kind in (InteractionEvent.GRASP_BEGIN, InteractionEvent.GRASP_END)]
+        self.assertEqual(grasps(events), grasps(live_events))
         return summary
 
     def test_the_demo_recorded_while_it_runs(self):
