@@ -133,9 +133,10 @@ bool on_rim(const ShapePair& pair, const Vector3& normal, const std::array<Place
 }
 
 /// Moves the points of friction towards the centre of the load, by spread_of(): sliding has the same force
-/// and moment as before, spinning that of a face under an even load. The load is that of the last step, or
-/// even.
-void place_friction(const ShapePair& pair, const std::array<BodyContact*, 4>& region, int count) {
+/// and moment as before, spinning that of a face under an even load. `loads`: of the last step; if all are 0,
+/// the load is even.
+void place_friction(const ShapePair& pair, const std::array<BodyContact*, 4>& region,
+                    const std::array<double, 4>& loads, int count) {
   if (count < 2) return;
   const Vector3& normal = region[0]->normal;
   const Vector3 u = normal.unitOrthogonal(), v = normal.cross(u);
@@ -145,10 +146,9 @@ void place_friction(const ShapePair& pair, const std::array<BodyContact*, 4>& re
   for (int i = 0; i < count; ++i) {
     const BodyContact& contact = *region[i];
     const Vector3 offset = contact.point - region[0]->point;
-    const double force = std::max(0.0, -normal.dot(contact.force));
     places[i] = {u.dot(offset), v.dot(offset)};
-    centre += force * contact.point;
-    load += force;
+    centre += loads[i] * contact.point;
+    load += loads[i];
     even += contact.point / count;
   }
   centre = load > 0.0 ? Vector3(centre / load) : even;
@@ -168,8 +168,10 @@ double stiffness_of(double breadth) {
 
 /// For a pair that meets within the step, points, arms and depths, at most 0, are those at the first touch.
 /// All points have equal fractions of the pair's stiffness. `memory`: of the last step; null if the surfaces
-/// did not touch.
-void make_contact(const BodyContactKey& key, const ShapePair& pair, const TimedManifold& touch,
+/// did not touch. Its force stays across a gap, as what the response starts from: in a wall that leans, half
+/// of the loaded contacts are apart by a rounding error. True if the surfaces overlap, and did in the last
+/// step.
+bool make_contact(const BodyContactKey& key, const ShapePair& pair, const TimedManifold& touch,
                   const ManifoldPoint& point, const BodyContactMemory* memory, BodyContact& contact) {
   if (memory != nullptr) static_cast<BodyContactMemory&>(contact) = *memory;
   const bool lasting = contact.depth > 0.0 && point.depth > 0.0;
@@ -179,7 +181,6 @@ void make_contact(const BodyContactKey& key, const ShapePair& pair, const TimedM
   contact.depth = touch.time < 0.0 ? point.depth : std::min(point.depth, 0.0);
   contact.share = stiffness_of(touch.manifold.breadth) / touch.manifold.count_of(point.region);
   contact.first_touch = touch.time;
-  if (!lasting) contact.force.setZero();
   contact.struck = contact.struck && point.depth > -kMinSeparation;
   contact.material = together(pair.a.body.material, pair.b.body.material);
   const double time = std::max(0.0, touch.time);
@@ -193,6 +194,7 @@ void make_contact(const BodyContactKey& key, const ShapePair& pair, const TimedM
   } else {
     contact.friction = Friction::sticking;
   }
+  return lasting;
 }
 
 /// Insertion sort: gcc 14 warns of a read out of bounds in std::sort of so few points.
@@ -312,20 +314,27 @@ void BodyContactFinder::find_pair(std::size_t ia, std::size_t ib, double step,
       if (!touch) continue;
       sort_points(touch->manifold);
       const std::size_t first = contacts.size();
-      std::array<std::uint8_t, 4 * Manifold::kMaxRegions> regions{};  // of the contacts from `first` on
+      // Of the contacts from `first` on.
+      std::array<std::uint8_t, 4 * Manifold::kMaxRegions> regions{};
+      std::array<bool, 4 * Manifold::kMaxRegions> lasting{};
       for (const ManifoldPoint& point : touch->manifold) {
         const BodyContactKey key{static_cast<std::uint16_t>(ia), static_cast<std::uint16_t>(ib),
                                  static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), point.feature};
-        regions[contacts.size() - first] = point.region;
-        make_contact(key, pair, *touch, point, memory_of(key), contacts.emplace_back());
+        const std::size_t k = contacts.size() - first;
+        regions[k] = point.region;
+        lasting[k] = make_contact(key, pair, *touch, point, memory_of(key), contacts.emplace_back());
       }
       for (int region = 0; region < Manifold::kMaxRegions; ++region) {
         std::array<BodyContact*, 4> together{};
+        std::array<double, 4> loads{};
         int count = 0;
-        for (std::size_t k = first; k < contacts.size(); ++k)
-          if (regions[k - first] == region) together[count++] = &contacts[k];
+        for (std::size_t k = first; k < contacts.size(); ++k) {
+          if (regions[k - first] != region) continue;
+          if (lasting[k - first]) loads[count] = std::max(0.0, -contacts[k].normal.dot(contacts[k].force));
+          together[count++] = &contacts[k];
+        }
         if (count == 0) break;  // regions are numbered from 0
-        place_friction(pair, together, count);
+        place_friction(pair, together, loads, count);
       }
       for (std::size_t k = first; k < contacts.size(); ++k) anchor(a, b, contacts[k]);
     }

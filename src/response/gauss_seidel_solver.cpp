@@ -11,18 +11,16 @@ namespace {
 /// as many sweeps as a cube of such bodies is high, and as a slender stack is: with fewer, blocks of 384 to
 /// 1000 cubes without a warm start fell apart, and so did 50 boards on each other.
 constexpr int kRelaxationBudget = 400, kMinSweeps = 4, kMaxSweeps = 30;
-/// An island is nearly at rest if no body is faster than a fall of this many steps. Such an island, and one
-/// in which a body touches another of so many times its mass, takes as many sweeps as it needs, up to a
-/// number and a budget for large ones: with fewer, a tower of 15 cubes, and a body on one of a hundredth of
-/// its mass, gained energy and fell. If masses are alike, an eighth of that budget will do, or so many times
-/// the square of the height, over which loads spread: more took a heap 18 times its mean step and changed
-/// nothing.
-constexpr double kRestFallSteps = 2.0, kMassRatio = 10.0;
-constexpr int kRestBudget = 40000, kMinSweepsAtRest = 80, kMaxSweepsAtRest = 1000, kSweepsByHeight = 4;
-/// Iteration ends when a sweep changes velocities by less than this ratio of the contacts' total change: a
-/// moving island's contacts change from step to step by more, one at rest would creep. At 1e-3 two cubes that
-/// slide differed by 30 um after 1 cm from themselves, begun 1e-12 m aside.
-constexpr double kConverged = 1e-4, kConvergedAtRest = 1e-6;
+/// An island is nearly at rest if no body begins the step faster than after a fall of so many steps. Such an
+/// island, and one in which a body touches another of so many times its mass, takes as many sweeps as it
+/// needs, up to a larger budget, or so many times the square of the height, over which loads spread; large
+/// ones up to 8 times that budget. With fewer, a tower of 15 cubes, and a body on one of a hundredth of its
+/// mass, gained energy and fell.
+constexpr double kRestFallSteps = 1.0, kMassRatio = 10.0;
+constexpr int kRestBudget = 5000, kSweepsByHeight = 4, kMinSweepsAtRest = 80;
+/// Iteration ends when a sweep changes velocities by less than this ratio of the contacts' total change. At
+/// 1e-4 a box that landed slid aside by 0.5 mm, and what rests would creep.
+constexpr double kConverged = 1e-6;
 /// Largest distance of a contact point from the body's centre, over the bounding radius; includes the margin.
 constexpr double kRadiusMargin = 1.2;
 constexpr double kMaxSpeed = 1e300;  // [m/s]
@@ -153,7 +151,7 @@ double GaussSeidelSolver::max_speed_gain() const {
 /// whose surfaces close more slowly than convergence is judged stay open: in a block of 1000 cubes without
 /// gaps, some of 8000 did so in each sweep.
 bool GaussSeidelSolver::admit_closing(const ContactStep& step, double given) {
-  const double negligible = kConvergedAtRest * given;
+  const double negligible = kConverged * given;
   if (open_.empty() || max_speed_gain() < min_missing_speed_ + negligible) return false;
   checked_.clear();
   for (const PatchBody& body : bodies_) checked_.push_back(body.motion);
@@ -252,17 +250,31 @@ int GaussSeidelSolver::height() {
   return highest;
 }
 
+/// `waits`: for convergence, as if at rest.
+int GaussSeidelSolver::max_sweeps(int height, bool waits) const {
+  const int points = std::max(1, static_cast<int>(points_.size())), bodies = static_cast<int>(free_.size());
+  int sweeps = std::max(kMinSweeps, height * height / bodies);
+  while (sweeps * sweeps * sweeps < bodies) ++sweeps;
+  sweeps = std::clamp(kRelaxationBudget / points, sweeps, std::max(sweeps, kMaxSweeps));
+  if (!waits) return sweeps;
+  const int budget = kRestBudget / points;
+  return std::max(sweeps, std::min(std::max(budget, kSweepsByHeight * height * height),
+                                   std::max(8 * budget, kMinSweepsAtRest)));
+}
+
+/// Largest speed of a body before the step [m/s].
+double GaussSeidelSolver::begin_speed(const ContactStep& step) const {
+  double largest = 0.0;
+  for (const Motion6& free : free_)
+    largest = std::max(largest, (free.head<3>() - step_ * step.gravity).squaredNorm());
+  return std::sqrt(largest);
+}
+
 /// Largest change of a body's velocity since `then` [m/s].
 double GaussSeidelSolver::max_change(const std::vector<Motion6>& then) const {
   double largest = 0.0;
   for (std::size_t i = 0; i < free_.size(); ++i)
     largest = std::max(largest, (bodies_[i].motion - then[i]).head<3>().squaredNorm());
-  return std::sqrt(largest);
-}
-
-double GaussSeidelSolver::max_speed() const {
-  double largest = 0.0;
-  for (const PatchBody& body : bodies_) largest = std::max(largest, body.motion.head<3>().squaredNorm());
   return std::sqrt(largest);
 }
 
@@ -273,31 +285,21 @@ void GaussSeidelSolver::solve(const ContactStep& step) {
   impulse_directions_.assign(points_.size(), PatchImpulses::Zero());
   motions_before_.resize(bodies_.size());
   motion_directions_.assign(bodies_.size(), Motion6::Zero());
-  const auto points = static_cast<int>(points_.size()), bodies = static_cast<int>(free_.size());
+  const bool waits =
+      begin_speed(step) < kRestFallSteps * step_ * step.gravity.norm() || max_mass_ratio() > kMassRatio;
   int stack = height();
-  int min_sweeps = std::max(kMinSweeps, stack * stack / std::max(1, bodies));
-  while (min_sweeps * min_sweeps * min_sweeps < bodies) ++min_sweeps;
-  const int max_sweeps =
-      std::clamp(kRelaxationBudget / std::max(1, points), min_sweeps, std::max(min_sweeps, kMaxSweeps));
-  const int max_at_rest =
-      std::max(max_sweeps, std::clamp(kRestBudget / std::max(1, points), kMinSweepsAtRest, kMaxSweepsAtRest));
-  const double fall = kRestFallSteps * step_ * step.gravity.norm();
-  const bool uneven = max_mass_ratio() > kMassRatio;
   double last = 0.0;
   for (int i = 1;; ++i) {
     if (i > 1) last = accelerate(last);
     sweep();
-    const bool rests = max_speed() < fall;
     const double given = max_change(free_);
-    const bool converged = max_change(motions_before_) <= (rests ? kConvergedAtRest : kConverged) * given;
+    const bool converged = max_change(motions_before_) <= kConverged * given;
     if (admit_closing(step, given)) {
       stack = height();
     } else if (converged) {
       break;
     }
-    const int if_even = std::max(kRestBudget / 8 / std::max(1, points), kSweepsByHeight * stack * stack);
-    const int at_rest = uneven ? max_at_rest : std::clamp(if_even, max_sweeps, max_at_rest);
-    if (i >= (rests || uneven ? at_rest : max_sweeps)) break;
+    if (i >= max_sweeps(stack, waits)) break;
   }
 }
 

@@ -38,8 +38,9 @@ class GaussSeidelSolver {
 
   double max_mass_ratio() const;
   int height();
+  int max_sweeps(int height, bool waits) const;
+  double begin_speed(const ContactStep& step) const;
   double max_change(const std::vector<Motion6>& then) const;
-  double max_speed() const;
   double missing_speed(const ContactStep& step, const Range& range) const;
   double max_speed_gain() const;
   bool admit_closing(const ContactStep& step, double given);
