@@ -1,6 +1,7 @@
 // A simulated operator who floats, at the training tasks for 0 g.
 
 #include "operators_at_work.h"
+#include "synthetic/floating_person.h"
 
 namespace mrhi {
 namespace {
@@ -110,6 +111,21 @@ TEST(FloatingPerson, is_refused_without_an_operator_or_a_rail) {
   expect_refusal(scene, "no rail");
   scene.operators.clear();
   expect_refusal(scene, "no operator");
+}
+
+TEST(Rails, are_fixtures_that_are_one_cylinder_at_most_6_cm_thick_and_at_least_30_cm_long) {
+  const auto rail = [](double radius, double length, bool fixed) {
+    Scene scene;
+    Body body;
+    body.name = "rail", body.fixed = fixed;
+    body.shapes.push_back({Cylinder{radius, 0.5 * length}, Pose{}});
+    scene.bodies = {body};
+    return scene;
+  };
+  EXPECT_EQ(rails_of(rail(0.0299, 0.301, true)).size(), 1u);
+  EXPECT_THROW(rails_of(rail(0.0301, 0.301, true)), std::invalid_argument);
+  EXPECT_THROW(rails_of(rail(0.0299, 0.299, true)), std::invalid_argument);
+  EXPECT_THROW(rails_of(rail(0.0299, 0.301, false)), std::invalid_argument);
 }
 
 /// Each finger but the thumb touches with at least two bones, none deeper than the compliance of a soft pad.
