@@ -38,7 +38,7 @@ class GaussSeidelSolver {
 
   double max_mass_ratio() const;
   int height();
-  int max_sweeps(int height, bool waits) const;
+  int max_sweeps(int height, bool rests, bool uneven) const;
   double begin_speed(const ContactStep& step) const;
   double max_change(const std::vector<Motion6>& then) const;
   double missing_speed(const ContactStep& step, const Range& range) const;
