@@ -11,13 +11,17 @@ namespace {
 /// as many sweeps as a cube of such bodies is high, and as a slender stack is: with fewer, blocks of 384 to
 /// 1000 cubes without a warm start fell apart, and so did 50 boards on each other.
 constexpr int kRelaxationBudget = 400, kMinSweeps = 4, kMaxSweeps = 30;
-/// An island is nearly at rest if no body begins the step faster than after a fall of so many steps. Such an
-/// island takes as many sweeps as it needs, up to a larger budget, or so many times the square of the height,
-/// over which loads spread. A fortieth of what an island may take in which a body touches another of so many
-/// times its mass: more took a heap 30 times its mean step and changed nothing. With fewer, a tower of 15
-/// cubes, and a body on one of a hundredth of its mass, gained energy and fell.
-constexpr double kRestFallSteps = 1.0, kMassRatio = 10.0;
-constexpr int kRestBudget = 1000, kSweepsByHeight = 4, kUnevenBudget = 40000, kMinSweepsUneven = 80;
+/// An island is nearly at rest if no body begins the step faster than after a fall of so many steps. It takes
+/// as many sweeps as it needs, up to a larger budget, or so many times the square of the height, over which
+/// loads spread. With fewer, a tower of 15 cubes gained energy and fell; more took a heap 30 times its mean
+/// step and changed nothing.
+constexpr double kRestFallSteps = 1.0;
+constexpr int kRestBudget = 1000, kSweepsByHeight = 4;
+/// The largest budget and the sweeps that it allows at least. It limits large islands at rest, and an island
+/// in which a body touches another of so many times its mass has all of it: with less, a body on one of a
+/// hundredth of its mass fell.
+constexpr int kLargestBudget = 40000, kMinLargest = 80;
+constexpr double kMassRatio = 10.0;
 /// Iteration ends when a sweep changes velocities by less than this ratio of the contacts' total change. At
 /// 1e-4 a box that landed slid aside by 0.5 mm, and what rests would creep.
 constexpr double kConverged = 1e-6;
@@ -255,7 +259,7 @@ int GaussSeidelSolver::max_sweeps(int height, bool rests, bool uneven) const {
   int sweeps = std::max(kMinSweeps, height * height / bodies);
   while (sweeps * sweeps * sweeps < bodies) ++sweeps;
   sweeps = std::clamp(kRelaxationBudget / points, sweeps, std::max(sweeps, kMaxSweeps));
-  const int most = std::max(kUnevenBudget / points, kMinSweepsUneven);
+  const int most = std::max(kLargestBudget / points, kMinLargest);
   if (uneven) return std::max(sweeps, most);
   const int at_rest = std::max(kRestBudget / points, kSweepsByHeight * height * height);
   return rests ? std::max(sweeps, std::min(at_rest, most)) : sweeps;

@@ -43,15 +43,15 @@ def recorded_topics():
     return [topic for _, peer, _, _, topic, *_ in connections if peer == "/rosbag_record"]
 
 
-def told_by_the_node(bag):
+def reported_by_the_node(bag):
     """By the number of the last input: (stamp [ns], state hash), as /diagnostics had them."""
-    told = {}
+    reported = {}
     for _, message, _ in bag.read_messages(["/diagnostics"]):
         for status in message.status:
             values = {pair.key: pair.value for pair in status.values}
             if "state hash" in values:
-                told[int(values["simulation input"])] = (int(values["state stamp [ns]"]), values["state hash"])
-    return told
+                reported[int(values["simulation input"])] = (int(values["state stamp [ns]"]), values["state hash"])
+    return reported
 
 
 class ReplayTest(unittest.TestCase):
@@ -128,21 +128,21 @@ class ReplayTest(unittest.TestCase):
         self.assertEqual(live["same"], live["compared"])
         self.assertGreater(live["compared"], 100)
         with rosbag.Bag(bag) as recorded:
-            told = {number: what for number, what in told_by_the_node(recorded).items() if number in hashes}
+            reported = {number: what for number, what in reported_by_the_node(recorded).items() if number in hashes}
             live_events = [(event.header.stamp.to_sec(), event.kind)
                            for _, event, _ in recorded.read_messages(["/interaction_events"])]
             first_frame = next(message.header.stamp.to_sec() for _, message, _ in recorded.read_messages(["/simulation_input"])
                                if message.kind == SimulationInput.FRAME)
-        self.assertGreater(len(told), 0)
-        for number, (stamp, state_hash) in told.items():
+        self.assertGreater(len(reported), 0)
+        for number, (stamp, state_hash) in reported.items():
             self.assertEqual(hashes[number], (stamp, state_hash), "input %d" % number)
         with open(output + "/events.csv") as file:
             events = [(first_frame + float(row["time"]), getattr(InteractionEvent, row["kind"]))
                       for row in csv.DictReader(file)]
-        until = 1e-9 * max(stamp for stamp, _ in told.values())
+        last_state = 1e-9 * max(stamp for stamp, _ in reported.values()) + 0.001  # less than a frame later
 
         def grasps(events):
-            return [kind for time, kind in events if self.recorded_since < time < until and
+            return [kind for time, kind in events if self.recorded_since < time < last_state and
                     kind in (InteractionEvent.GRASP_BEGIN, InteractionEvent.GRASP_END)]
         self.assertEqual(grasps(events), grasps(live_events))
         return summary
